@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+// isorast render: one picture of a volume's isosurfaces.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "options.h"
+#include "report.h"
+#include "view.h"
+
+namespace isorast::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The file's name without its extensions, in the current folder; a formula's with '-' for ':'.
+std::string default_output(const std::string& input) {
+    std::string name = input;
+    if (is_procedural(input)) {
+        std::ranges::replace_if(name, [](char c) { return c == ':' || c == '/'; }, '-');
+    } else {
+        std::filesystem::path path = std::filesystem::path(input).filename();
+        if (path.extension() == ".gz") path = path.stem();
+        name = path.stem().string();
+    }
+    return name + ".png";
+}
+
+// a/b.png -> a/b.difference.png
+std::string difference_path(const std::string& output) {
+    return std::filesystem::path(output).replace_extension(".difference.png").string();
+}
+
+struct Render : Command {
+    VolumeArguments arguments;
+    ViewArguments view;
+    RendererOptions options;
+    GpuOptions gpu_options;
+    Frame frame;
+    std::vector<std::string> isovalue_words;
+    std::string output, reference;
+    bool transparent = false, stats = false, json = false;
+    double tolerance = 0;
+    size_t repeat = 1;
+
+    explicit Render(CLI::App& parent)
+        : Command(*parent.add_subcommand("render", "Render isosurfaces to a PNG file")) {
+        arguments.add_to(app);
+        add_surface_options();
+        add_picture_options();
+        view.add_to(app);
+        add_device_options();
+        add_output_options();
+        app.footer(
+            "Examples: isorast render head.nrrd --iso 300 -o head.png\n"
+            "          isorast render ct.nii.gz --iso 200,600 --color bone,red --view A --size "
+            "1920x1080");
+    }
+
+    void add_surface_options() {
+        const auto check = [](const std::string& text) {
+            // A wrong word is found before a large file is read.
+            try {
+                parse_isovalues(text, make_procedural("sphere:2"));
+            } catch (const Error& error) {
+                return std::string(error.what());
+            }
+            return std::string();
+        };
+        app.add_option("--iso", isovalue_words,
+                       "Isovalues in data units: 300 | 200,600 | 200:1000:100 | p99 | 1.5sigma | "
+                       "auto (default)")
+            ->type_name("VALUES")
+            ->allow_extra_args(false)
+            ->check(CLI::Validator(check, ""))
+            ->group("Surface");
+        app.add_option_function<std::vector<std::string>>(
+               "--color",
+               [this](const std::vector<std::string>& words) {
+                   for (const std::string& word : words)
+                       frame.colors.push_back(parse_color("--color", word));
+               },
+               "A color for each isovalue: names or #rrggbb; default: a palette")
+            ->type_name("COLORS")
+            ->delimiter(',')
+            ->allow_extra_args(false)
+            ->group("Surface");
+        add_word("--shading", "gooch (default), phong, normals, depth, blocks or forward",
+                 "Surface", frame.shading, parse_shading);
+        app.add_option("--technique", options.technique,
+                       fmt::format("{}", fmt::join(techniques(), " or ")))
+            ->type_name("NAME")
+            ->capture_default_str()
+            ->check(CLI::IsMember(techniques()).description(""))
+            ->group("Surface");
+        add_word("--rasterizer", "hardware, compute or automatic (default)", "Surface",
+                 options.rasterizer, parse_rasterizer);
+        app.add_flag("--exact", options.exact,
+                     "raymarch: solve each cell's cubic instead of stepping")
+            ->group("Surface");
+        app.add_option_function<std::string>(
+               "--culling", [this](const std::string& word) { frame.culling = word == "on"; },
+               "Skip what is out of view: on (default) or off")
+            ->type_name("on|off")
+            ->check(CLI::IsMember({"on", "off"}).description(""))
+            ->group("Surface");
+    }
+
+    template <class Value, class Parse>
+    void add_word(const std::string& name, const std::string& words, const std::string& group,
+                  Value& value, Parse parse) {
+        app.add_option_function<std::string>(
+               name,
+               [name, words, parse, &value](const std::string& word) {
+                   const auto parsed = parse(word);
+                   if (!parsed) {
+                       throw CLI::ValidationError(
+                           name, fmt::format("expected {}; found \"{}\"", words, word));
+                   }
+                   value = *parsed;
+               },
+               words)
+            ->type_name("NAME")
+            ->group(group);
+    }
+
+    void add_picture_options() {
+        app.add_option_function<std::string>(
+               "--size",
+               [this](const std::string& text) {
+                   const auto n = parse_counts("--size", text, 2);
+                   frame.size = {n[0], n[1]};
+               },
+               "Pixels of the picture; default 1280x720")
+            ->type_name("WxH")
+            ->group("Picture");
+        app.add_option_function<std::string>(
+               "--background",
+               [this](const std::string& text) {
+                   frame.background = parse_color("--background", text);
+               },
+               "Color behind the surface: a name or #rrggbb; default white")
+            ->type_name("COLOR")
+            ->group("Picture");
+        app.add_flag("--transparent", transparent, "No background: alpha 0")->group("Picture");
+    }
+
+    void add_device_options() {
+        app.add_option("--device", gpu_options.device,
+                       "A number or a part of a name from `isorast devices`, or cpu")
+            ->type_name("DEVICE")
+            ->group("Device");
+        app.add_flag("--validation", gpu_options.validation,
+                     "Turn the Vulkan validation layer on; any message makes the exit code 1")
+            ->group("Device");
+        app.add_option("--max-brick-side", options.max_brick_side)->group("");  // for tests
+    }
+
+    void add_output_options() {
+        app.add_option("-o,--output", output,
+                       "The PNG file, - for standard output; default: INPUT's name in this folder")
+            ->type_name("FILE")
+            ->check(CLI::Validator(
+                [](const std::string& path) {
+                    const std::string ending = std::filesystem::path(path).extension().string();
+                    const bool png = ending.empty() || ending == ".png" || ending == ".PNG";
+                    return png ? std::string() : "only .png files can be written, found " + path;
+                },
+                ""))
+            ->group("Output");
+        CLI::Option* compared =
+            app.add_option(
+                   "--reference", reference,
+                   "Compare with this PNG; where it differs, write NAME.difference.png and exit 1")
+                ->type_name("FILE")
+                ->group("Output");
+        app.add_option("--tolerance", tolerance, "Allowed difference of a channel, 0 to 255")
+            ->type_name("T")
+            ->check(CLI::Range(0.0, 255.0).description(""))
+            ->needs(compared)
+            ->group("Output");
+        app.add_flag("--stats", stats, "Print the GPU time of each pass, block counts and bytes")
+            ->group("Output");
+        app.add_flag("--json", json, "Print all of this as JSON")->group("Output");
+        app.add_option("--repeat", repeat,
+                       "Render N frames after one for warming up; --stats gives medians")
+            ->type_name("N")
+            ->check(CLI::Range(size_t{1}, size_t{100000}).description(""))
+            ->group("Output");
+    }
+
+    int run() override {
+        const auto start = Clock::now();
+        if (output.empty()) output = default_output(arguments.input);
+        if (output == "-" && json) {
+            throw CLI::ValidationError("--json",
+                                       "standard output takes the picture; name a file with -o");
+        }
+        if (transparent) frame.background.a = 0;
+
+        const Volume volume = load_volume(arguments.input, arguments.load);
+        frame.isovalues = parse_isovalues(
+            isovalue_words.empty() ? "auto" : fmt::format("{}", fmt::join(isovalue_words, ",")),
+            volume);
+        if (frame.colors.size() > frame.isovalues.size()) {
+            throw CLI::ValidationError(
+                "--color", fmt::format("{} colors for {} isovalues", frame.colors.size(),
+                                       frame.isovalues.size()));
+        }
+        frame.camera = view.camera(volume);
+        note_what_is_special(volume);
+
+        Gpu gpu(gpu_options);
+        if (const std::string unfit = what_does_not_fit(gpu, volume, options); !unfit.empty())
+            note(unfit);
+        Renderer renderer(gpu, volume, options);
+        note_isovalues_outside(volume.name, renderer.value_range());
+
+        std::vector<FrameStats> all_stats;
+        Image image;
+        if (repeat > 1) renderer.render(frame);
+        for (size_t i = 0; i < repeat; ++i) {
+            image = renderer.render(frame);
+            all_stats.push_back(renderer.stats());
+        }
+        write(image, volume);
+
+        RenderReport report{.output = output,
+                            .size = frame.size,
+                            .isovalues = frame.isovalues,
+                            .technique = options.technique,
+                            .rasterizer = std::string(name_of(renderer.rasterizer())),
+                            .device = gpu.info().name,
+                            .driver = gpu.info().driver,
+                            .value_range = renderer.value_range(),
+                            .seconds = seconds_since(start),
+                            .stats = median_of(all_stats),
+                            .frames = repeat,
+                            .difference = std::nullopt,
+                            .tolerance = tolerance};
+        if (!reference.empty()) report.difference = compare_with_reference(image);
+        print(report);
+        const bool differs = report.difference && report.difference->pixels_over > 0;
+        return print_validation(gpu) || differs ? 1 : 0;
+    }
+
+    // What makes a picture empty, or another one than expected, is said before it is made.
+    void note_what_is_special(const Volume& volume) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (volume.dims[axis] > 1) continue;
+            note(fmt::format("{}: 1 voxel thin along {}: no cells, so only background", volume.name,
+                             "xyz"[axis]));
+        }
+        if (volume.time_steps > 1) {
+            note(fmt::format("{}: this is time step {} of 0 to {}; choose with --time", volume.name,
+                             volume.time_step, volume.time_steps - 1));
+        }
+    }
+
+    void note_isovalues_outside(const std::string& name, const std::array<double, 2>& range) const {
+        if (!(range[0] <= range[1])) {
+            return note(fmt::format("{}: no voxel is finite, so only background", name));
+        }
+        for (double isovalue : frame.isovalues) {
+            // Inside is value >= isovalue: at the minimum everything is inside.
+            if (isovalue > range[0] && isovalue <= range[1]) continue;
+            note(fmt::format("{}: no surface at {:.6g}: the values go from {:.6g} to {:.6g}", name,
+                             isovalue, range[0], range[1]));
+        }
+    }
+
+    void write(const Image& image, const Volume& volume) const {
+        const std::vector<std::pair<std::string, std::string>> text = {
+            {"Software", "isorast"},
+            {"Source", std::filesystem::path(volume.name).filename().string()},
+            {"Comment", fmt::format("isovalue {:.9g}", fmt::join(frame.isovalues, ", "))}};
+        if (output != "-") return write_png(output, image, text);
+        const std::vector<uint8_t> bytes = encode_png(image, text);
+        if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
+            std::fflush(stdout)) {
+            throw Error("standard output: the picture cannot be written");
+        }
+    }
+
+    Difference compare_with_reference(const Image& image) const {
+        const Image expected = read_png(reference);
+        const Difference difference = compare(image, expected, tolerance);
+        if (difference.pixels_over > 0) {
+            const std::string path =
+                difference_path(output == "-" ? default_output(arguments.input) : output);
+            write_png(path, difference_picture(image, expected, tolerance));
+            fmt::print(stderr, "isorast: error: {} differs: {}; see {}\n", reference,
+                       text_of(difference, image.size, tolerance), path);
+        }
+        return difference;
+    }
+
+    void print(const RenderReport& report) const {
+        FILE* out = output == "-" ? stderr : stdout;
+        if (json) {
+            fmt::print(out, "{}", text_of(cli::json_of(report)));
+        } else {
+            fmt::print(out, "{}{}", summary(report), stats ? stats_table(report) : "");
+        }
+    }
+
+    static bool print_validation(const Gpu& gpu) {
+        const auto messages = gpu.validation_messages();
+        for (const std::string& message : messages) {
+            fmt::print(stderr, "isorast: error: validation: {}\n", message);
+        }
+        return !messages.empty();
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_render(CLI::App& parent) {
+    return std::make_unique<Render>(parent);
+}
+
+}  // namespace isorast::cli

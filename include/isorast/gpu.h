@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// A Vulkan device, chosen or adopted. Includes no Vulkan header; <isorast/embed.h> does.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace isorast {
+
+namespace gpu {
+class Device;
+}
+struct HostDevice;  // <isorast/embed.h>
+
+struct DeviceInfo {
+    std::string name, driver, kind;    // kind: "discrete GPU", "integrated GPU", "CPU", ...
+    std::string api_version;
+    uint32_t subgroup_size = 0;
+    uint64_t memory_bytes = 0;         // of the largest device-local heap
+    uint64_t max_allocation_bytes = 0;
+    uint32_t max_image_side = 0;       // voxels along one side of a 3D image
+    // Empty when the device can; else why it cannot, in a few words.
+    std::string why_not_hardware, why_not_compute;
+};
+
+// Every device that the loader knows, in its order; never throws for a device that does not fit.
+std::vector<DeviceInfo> list_devices();
+
+struct GpuOptions {
+    // "" picks the best one: discrete, integrated, virtual, CPU; those with mesh shaders first.
+    // Else a number from list_devices(), a part of a name, or "cpu".
+    std::string device;
+    bool validation = false;  // the Khronos layer; every message is kept in validation_messages()
+};
+
+class Gpu {
+public:
+    // Throws Error when no device fits, with the reason for each.
+    explicit Gpu(const GpuOptions& options = {});
+    // Adopts the host's instance, device and queue, which must outlive this object.
+    explicit Gpu(const HostDevice& host);
+    Gpu(Gpu&&) noexcept;
+    ~Gpu();
+
+    const DeviceInfo& info() const;
+    // Warnings and errors that the validation layer has reported so far; empty when it is off.
+    std::vector<std::string> validation_messages() const;
+
+    gpu::Device& device() const { return *device_; }
+
+private:
+    std::unique_ptr<gpu::Device> device_;
+};
+
+}  // namespace isorast

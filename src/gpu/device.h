@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Device: the Vulkan instance, physical device, logical device and queue that everything else uses.
+#pragma once
+#include <isorast/gpu.h>
+#include <vulkan/vulkan.h>
+
+#include <mutex>
+
+namespace isorast::gpu {
+
+// What is enabled on the device, not only what it could do.
+struct Features {
+    bool storage_16bit = false;        // required: 16-bit entries in block lists
+    bool nonuniform_textures = false;  // required: volumes of several bricks
+    bool mesh_shaders = false;
+    bool dynamic_rendering = false;
+    bool storage_without_format = false;  // formulas sampled on the GPU
+};
+
+// Extension functions, loaded by hand.
+struct Functions {
+    PFN_vkCmdDrawMeshTasksIndirectEXT draw_mesh_tasks_indirect = nullptr;
+    PFN_vkCmdBeginRendering begin_rendering = nullptr;
+    PFN_vkCmdEndRendering end_rendering = nullptr;
+    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label = nullptr;
+    PFN_vkCmdEndDebugUtilsLabelEXT end_label = nullptr;
+};
+
+class Device {
+public:
+    explicit Device(const GpuOptions& options);
+    explicit Device(const HostDevice& host);
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+    ~Device();
+
+    VkDevice handle() const { return device_; }
+    VkPhysicalDevice physical() const { return physical_; }
+    VkQueue queue() const { return queue_; }
+    uint32_t queue_family() const { return queue_family_; }
+    bool has_graphics() const { return has_graphics_; }
+    const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+    const Features& features() const { return features_; }
+    const Functions& functions() const { return functions_; }
+    const DeviceInfo& info() const { return info_; }
+    bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    uint64_t max_allocation() const { return info_.max_allocation_bytes; }
+    // Bits of a timestamp that count; 0 when the queue has none.
+    uint32_t timestamp_bits() const { return timestamp_bits_; }
+
+    // Allocates for `requirements` in memory that has all of `wanted`, preferring `preferred` as well.
+    VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags wanted,
+                            const char* what) const;
+    std::vector<std::string> messages() const;
+
+private:
+    void create_instance(bool validation);
+    void create_device();
+    void adopt_physical();
+    void load_functions();
+
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    uint32_t queue_family_ = 0, timestamp_bits_ = 0;
+    bool owned_ = true, has_graphics_ = false, debug_utils_ = false;
+    VkPhysicalDeviceProperties properties_{};
+    VkPhysicalDeviceMemoryProperties memory_{};
+    Features features_;
+    Functions functions_;
+    DeviceInfo info_;
+
+public:  // for the messenger's callback only
+    mutable std::mutex messages_mutex;
+    std::vector<std::string> validation_messages;
+};
+
+}  // namespace isorast::gpu

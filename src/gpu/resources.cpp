@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Buffers, images and samplers.
+#include "gpu/resources.h"
+
+#include <utility>
+
+#include "gpu/device.h"
+#include "gpu/vulkan_check.h"
+
+namespace isorast::gpu {
+
+Buffer::Buffer(const Device& device, uint64_t bytes, Memory memory, const char* what)
+    : device_(&device), bytes_(bytes) {
+    const VkBufferCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+        .size = bytes,
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT};
+    VK_CHECK(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_));
+    VkMemoryRequirements requirements;
+    vkGetBufferMemoryRequirements(device.handle(), buffer_, &requirements);
+    const VkMemoryPropertyFlags wanted =
+        memory == Memory::device
+            ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
+            : VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    memory_ = device.allocate(requirements, wanted, what);
+    VK_CHECK(vkBindBufferMemory(device.handle(), buffer_, memory_, 0));
+    if (memory == Memory::host)
+        VK_CHECK(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_));
+}
+
+Buffer::~Buffer() {
+    if (!device_) return;
+    vkDestroyBuffer(device_->handle(), buffer_, nullptr);
+    vkFreeMemory(device_->handle(), memory_, nullptr);
+}
+
+void Buffer::swap(Buffer& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(buffer_, other.buffer_);
+    std::swap(memory_, other.memory_);
+    std::swap(mapped_, other.mapped_);
+    std::swap(bytes_, other.bytes_);
+}
+
+namespace {
+
+VkImage create_image(const Device& device, const ImageInfo& info) {
+    const VkImageCreateInfo create{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                   .imageType = info.is_3d ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
+                                   .format = info.format,
+                                   .extent = info.extent,
+                                   .mipLevels = 1,
+                                   .arrayLayers = 1,
+                                   .samples = VK_SAMPLE_COUNT_1_BIT,
+                                   .tiling = VK_IMAGE_TILING_OPTIMAL,
+                                   .usage = info.usage};
+    VkImage image = VK_NULL_HANDLE;
+    VK_CHECK(vkCreateImage(device.handle(), &create, nullptr, &image));
+    return image;
+}
+
+}  // namespace
+
+Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
+    : device_(&device), info_(info) {
+    image_ = create_image(device, info);
+    VkMemoryRequirements requirements;
+    vkGetImageMemoryRequirements(device.handle(), image_, &requirements);
+    bytes_ = requirements.size;
+    memory_ = device.allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, what);
+    VK_CHECK(vkBindImageMemory(device.handle(), image_, memory_, 0));
+    const VkImageViewCreateInfo view{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = image_,
+        .viewType = info.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
+        .format = info.format,
+        .subresourceRange = {aspect(), 0, 1, 0, 1}};
+    VK_CHECK(vkCreateImageView(device.handle(), &view, nullptr, &view_));
+}
+
+Texture::~Texture() {
+    if (!device_) return;
+    vkDestroyImageView(device_->handle(), view_, nullptr);
+    vkDestroyImage(device_->handle(), image_, nullptr);
+    vkFreeMemory(device_->handle(), memory_, nullptr);
+}
+
+uint64_t Texture::bytes_needed(const Device& device, const ImageInfo& info) {
+    const VkImage image = create_image(device, info);
+    VkMemoryRequirements requirements;
+    vkGetImageMemoryRequirements(device.handle(), image, &requirements);
+    vkDestroyImage(device.handle(), image, nullptr);
+    return requirements.size;
+}
+
+VkImageAspectFlags Texture::aspect() const {
+    return info_.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
+void Texture::swap(Texture& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(image_, other.image_);
+    std::swap(view_, other.view_);
+    std::swap(memory_, other.memory_);
+    std::swap(info_, other.info_);
+    std::swap(bytes_, other.bytes_);
+}
+
+Sampler::Sampler(const Device& device) : device_(&device) {
+    const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                   .magFilter = VK_FILTER_LINEAR,
+                                   .minFilter = VK_FILTER_LINEAR,
+                                   .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                   .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                   .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+    VK_CHECK(vkCreateSampler(device.handle(), &info, nullptr, &sampler_));
+}
+
+Sampler::~Sampler() {
+    if (device_) vkDestroySampler(device_->handle(), sampler_, nullptr);
+}
+
+void Sampler::swap(Sampler& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(sampler_, other.sampler_);
+}
+
+}  // namespace isorast::gpu

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Buffers, images and samplers: move-only owners, each with its own memory. Images live in GENERAL layout.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace isorast::gpu {
+
+class Device;
+
+class Buffer {
+public:
+    enum class Memory : uint8_t { device, host };  // host: visible, coherent, mapped for its whole life
+
+    Buffer() = default;
+    // Usable as storage, uniform, indirect, and for transfers both ways.
+    Buffer(const Device& device, uint64_t bytes, Memory memory, const char* what);
+    Buffer(Buffer&& other) noexcept { swap(other); }
+    Buffer& operator=(Buffer&& other) noexcept { swap(other); return *this; }
+    ~Buffer();
+
+    VkBuffer handle() const { return buffer_; }
+    uint64_t bytes() const { return bytes_; }
+    template <class T>
+    T* data() const { return static_cast<T*>(mapped_); }
+    explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
+
+private:
+    void swap(Buffer& other) noexcept;
+    const Device* device_ = nullptr;
+    VkBuffer buffer_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    void* mapped_ = nullptr;
+    uint64_t bytes_ = 0;
+};
+
+struct ImageInfo {
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent3D extent{1, 1, 1};
+    VkImageUsageFlags usage = 0;
+    bool is_3d = false;
+};
+
+class Texture {
+public:
+    Texture() = default;
+    Texture(const Device& device, const ImageInfo& info, const char* what);
+    Texture(Texture&& other) noexcept { swap(other); }
+    Texture& operator=(Texture&& other) noexcept { swap(other); return *this; }
+    ~Texture();
+
+    // The bytes that such an image needs on the device, without making one.
+    static uint64_t bytes_needed(const Device& device, const ImageInfo& info);
+
+    VkImage handle() const { return image_; }
+    VkImageView view() const { return view_; }
+    VkFormat format() const { return info_.format; }
+    VkExtent3D extent() const { return info_.extent; }
+    VkImageAspectFlags aspect() const;
+    uint64_t bytes() const { return bytes_; }
+    explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
+
+private:
+    void swap(Texture& other) noexcept;
+    const Device* device_ = nullptr;
+    VkImage image_ = VK_NULL_HANDLE;
+    VkImageView view_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    ImageInfo info_;
+    uint64_t bytes_ = 0;
+};
+
+class Sampler {
+public:
+    Sampler() = default;
+    explicit Sampler(const Device& device);  // trilinear, clamped to the edge
+    Sampler(Sampler&& other) noexcept { swap(other); }
+    Sampler& operator=(Sampler&& other) noexcept { swap(other); return *this; }
+    ~Sampler();
+    VkSampler handle() const { return sampler_; }
+
+private:
+    void swap(Sampler& other) noexcept;
+    const Device* device_ = nullptr;
+    VkSampler sampler_ = VK_NULL_HANDLE;
+};
+
+}  // namespace isorast::gpu

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What physical devices can do, and which one to take.
+#pragma once
+#include <optional>
+
+#include "gpu/device.h"
+
+namespace isorast::gpu {
+
+// The queue family with graphics and compute, or compute alone; nothing without compute.
+struct QueueChoice {
+    uint32_t family = 0, timestamp_bits = 0;
+    bool graphics = false;
+};
+std::optional<QueueChoice> choose_queue(VkPhysicalDevice physical);
+
+bool has_extension(VkPhysicalDevice physical, const char* name);
+Features supported_features(VkPhysicalDevice physical);
+DeviceInfo describe(VkPhysicalDevice physical);
+std::vector<VkPhysicalDevice> enumerate(VkInstance instance);
+// Follows GpuOptions::device. Throws Error that lists the devices when none fits.
+VkPhysicalDevice select(VkInstance instance, const std::string& wanted);
+
+}  // namespace isorast::gpu

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// The resident volume and its min-max pyramid.
+#include "grid/grid.h"
+
+#include <fmt/format.h>
+#include <isorast/error.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/device.h"
+#include "gpu/vulkan_check.h"
+#include "minmax_blocks_comp.h"
+#include "minmax_level_comp.h"
+#include "sample_field_comp.h"
+#include "volume/field.h"
+
+namespace isorast {
+
+namespace {
+
+using shared::uvec4;
+
+constexpr uint64_t STAGING_BYTES = 64u << 20;
+
+glm::uvec3 divide_up(glm::uvec3 a, glm::uvec3 b) { return (a + b - 1u) / b; }
+
+uint32_t product(glm::uvec3 v) { return v.x * v.y * v.z; }
+
+shared::GridInfo make_info(const BrickPlan& plan) {
+    shared::GridInfo info{};
+    const glm::uvec3 cells = glm::max(plan.voxels, 1u) - 1u;
+    glm::uvec3 nodes = glm::max(divide_up(cells, glm::uvec3(shared::BLOCK)), glm::uvec3(1));
+    const glm::uvec3 groups =
+        divide_up(nodes, {shared::GROUP_X, shared::GROUP_Y, shared::GROUP_Z});
+    info.voxels = uvec4(plan.voxels, 0);
+    info.blocks = uvec4(nodes, product(nodes));
+    info.groups = uvec4(groups, product(groups));
+    info.brick_cells = uvec4(plan.brick_cells, 0);
+    info.bricks = uvec4(plan.bricks, 0);
+    // Level 0 holds the blocks; each level above halves the sides, rounding up, up to the one root.
+    for (uint32_t first = 0;; nodes = (nodes + 1u) / 2u) {
+        info.levels[info.bricks.w++] = uvec4(nodes, first);
+        first += product(nodes);
+        if (product(nodes) == 1) return info;
+    }
+}
+
+uint64_t minmax_bytes(const shared::GridInfo& info, const Stored& stored) {
+    // Two values a node, up to the root; whole words.
+    return ((uint64_t{info.levels[info.bricks.w - 1].w} + 1) * 2 * stored.bytes() + 3) & ~uint64_t{3};
+}
+
+gpu::ImageInfo brick_image(const BrickPlan& plan, uint32_t brick, VkFormat format, bool written) {
+    const glm::uvec3 size = plan.extent(brick);
+    return {.format = format,
+            .extent = {size.x, size.y, size.z},
+            .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                     (written ? VkImageUsageFlags{VK_IMAGE_USAGE_STORAGE_BIT} : 0u),
+            .is_3d = true};
+}
+
+bool can_sample_on_gpu(const gpu::Device& device, const Stored& stored) {
+    VkFormatProperties properties;
+    vkGetPhysicalDeviceFormatProperties(device.physical(), stored.format, &properties);
+    return device.features().storage_without_format &&
+           (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
+}
+
+BrickPlan plan_for(const gpu::Device& device, const Volume& volume, const Stored& stored,
+                   uint32_t max_brick_side) {
+    const uint32_t device_side = device.limits().maxImageDimension3D;
+    const uint32_t side = max_brick_side ? std::min(max_brick_side, device_side) : device_side;
+    const glm::uvec3 voxels(volume.dims[0], volume.dims[1], volume.dims[2]);
+    // Drivers pad images: leave an eighth of the largest allocation for that.
+    return plan_bricks(voxels, stored.bytes(), side, device.max_allocation() / 8 * 7);
+}
+
+}  // namespace
+
+GridPlan plan_grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_side) {
+    // Only the width of a voxel matters here, not the origin of stored values.
+    const size_t bytes = std::min<size_t>(bytes_of(volume.type), 4);
+    const Stored stored{.format = bytes == 1   ? VK_FORMAT_R8_UNORM
+                                  : bytes == 2 ? VK_FORMAT_R16_UNORM
+                                               : VK_FORMAT_R32_SFLOAT,
+                        .bits = uint32_t(8 * bytes)};
+    GridPlan plan{.bricks = plan_for(device, volume, stored, max_brick_side)};
+    if (plan.bricks.count() <= shared::MAX_BRICKS)
+        for (uint32_t i = 0; i < plan.bricks.count(); ++i)
+            plan.volume_bytes += gpu::Texture::bytes_needed(
+                device, brick_image(plan.bricks, i, stored.format, false));
+    plan.minmax_bytes = minmax_bytes(make_info(plan.bricks), stored);
+    return plan;
+}
+
+Grid::Grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_side)
+    : device_(device), stored_(stored_as(volume)), sampler_(device) {
+    plan_ = plan_for(device, volume, stored_, max_brick_side);
+    if (plan_.count() > shared::MAX_BRICKS)
+        throw Error(fmt::format("{}: needs {} bricks of at most {} voxels a side, at most {} fit; use a "
+                                "device with larger 3D images, or a smaller volume",
+                                volume.name, plan_.count(),
+                                max_brick_side ? max_brick_side : device.limits().maxImageDimension3D,
+                                shared::MAX_BRICKS));
+    info_ = make_info(plan_);
+    make_scene_layout();
+    using Memory = gpu::Buffer::Memory;
+    minmax_ = gpu::Buffer(device, minmax_bytes(info_, stored_), Memory::device, "min-max blocks");
+    info_buffer_ = gpu::Buffer(device, sizeof(info_), Memory::device, "the grid's description");
+    frame_buffer_ =
+        gpu::Buffer(device, sizeof(shared::FrameInfo), Memory::device, "the frame's description");
+    minmax_blocks_ = gpu::Pipeline::compute(device, pipeline_info("minmax blocks", {}, 0),
+                                            minmax_blocks_comp);
+    minmax_level_ = gpu::Pipeline::compute(device, pipeline_info("minmax level", {}, 4),
+                                           minmax_level_comp);
+    const bool on_gpu = volume.field && volume.bytes.span().empty() && can_sample_on_gpu(device, stored_);
+    for (uint32_t i = 0; i < plan_.count(); ++i)
+        textures_.emplace_back(device, brick_image(plan_, i, stored_.format, on_gpu), "the volume");
+    if (on_gpu) {
+        sample_on_gpu(volume);
+    } else if (volume.bytes.span().empty()) {
+        Volume sampled{.name = volume.name, .dims = volume.dims, .type = volume.type,
+                       .field = volume.field, .affine = volume.affine, .slope = volume.slope,
+                       .intercept = volume.intercept};
+        sample(sampled);
+        upload(sampled);
+    } else {
+        upload(volume);
+    }
+    find_range();
+}
+
+Grid::~Grid() { vkDestroyDescriptorSetLayout(device_.handle(), scene_layout_, nullptr); }
+
+uint64_t Grid::volume_bytes() const {
+    uint64_t bytes = 0;
+    for (const auto& texture : textures_) bytes += texture.bytes();
+    return bytes;
+}
+
+uint64_t Grid::extra_bytes() const {
+    return minmax_.bytes() + info_buffer_.bytes() + frame_buffer_.bytes();
+}
+
+std::array<double, 2> Grid::value_range() const {
+    const double a = stored_.value(double(info_.range.x)), b = stored_.value(double(info_.range.y));
+    if (info_.range.x > info_.range.y) return {std::nan(""), std::nan("")};
+    return {std::min(a, b), std::max(a, b)};
+}
+
+gpu::PipelineInfo Grid::pipeline_info(const char* name, std::vector<gpu::Kind> bindings,
+                                      uint32_t push_bytes, std::vector<uint32_t> more) const {
+    std::vector<uint32_t> constants{stored_.bits, plan_.one() ? 0u : 1u};
+    constants.insert(constants.end(), more.begin(), more.end());
+    return {name, scene_layout_, std::move(bindings), push_bytes, std::move(constants)};
+}
+
+void Grid::make_scene_layout() {
+    const VkShaderStageFlags all = VK_SHADER_STAGE_ALL;
+    const std::array bindings{
+        VkDescriptorSetLayoutBinding{shared::BIND_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, nullptr},
+        VkDescriptorSetLayoutBinding{shared::BIND_GRID, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, nullptr},
+        VkDescriptorSetLayoutBinding{shared::BIND_BRICKS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+                                     shared::MAX_BRICKS, all, nullptr},
+        VkDescriptorSetLayoutBinding{shared::BIND_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLER, 1, all, nullptr},
+        VkDescriptorSetLayoutBinding{shared::BIND_MINMAX, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, all, nullptr}};
+    const VkDescriptorSetLayoutCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = uint32_t(bindings.size()),
+        .pBindings = bindings.data()};
+    VK_CHECK(vkCreateDescriptorSetLayout(device_.handle(), &info, nullptr, &scene_layout_));
+}
+
+void Grid::begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) const {
+    commands.update(frame_buffer_, 0, &frame, sizeof(frame));
+    commands.barrier();
+    const VkDescriptorSet set = commands.allocate_set(scene_layout_);
+    const std::array uniforms{VkDescriptorBufferInfo{frame_buffer_.handle(), 0, VK_WHOLE_SIZE},
+                              VkDescriptorBufferInfo{info_buffer_.handle(), 0, VK_WHOLE_SIZE}};
+    const VkDescriptorBufferInfo minmax{minmax_.handle(), 0, VK_WHOLE_SIZE};
+    const VkDescriptorImageInfo sampler{.sampler = sampler_.handle()};
+    // Every slot of the array must hold an image: those without a brick repeat the first.
+    std::array<VkDescriptorImageInfo, shared::MAX_BRICKS> images;
+    for (size_t i = 0; i < images.size(); ++i)
+        images[i] = {VK_NULL_HANDLE, textures_[i < textures_.size() ? i : 0].view(),
+                     VK_IMAGE_LAYOUT_GENERAL};
+    const auto write = [&](uint32_t binding, uint32_t count, VkDescriptorType type,
+                           const VkDescriptorBufferInfo* buffer, const VkDescriptorImageInfo* image) {
+        return VkWriteDescriptorSet{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                    .dstSet = set,
+                                    .dstBinding = binding,
+                                    .descriptorCount = count,
+                                    .descriptorType = type,
+                                    .pImageInfo = image,
+                                    .pBufferInfo = buffer};
+    };
+    const std::array writes{
+        write(shared::BIND_FRAME, 1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, &uniforms[0], nullptr),
+        write(shared::BIND_GRID, 1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, &uniforms[1], nullptr),
+        write(shared::BIND_BRICKS, shared::MAX_BRICKS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, nullptr, images.data()),
+        write(shared::BIND_SAMPLER, 1, VK_DESCRIPTOR_TYPE_SAMPLER, nullptr, &sampler),
+        write(shared::BIND_MINMAX, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, &minmax, nullptr)};
+    vkUpdateDescriptorSets(device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
+    commands.set_scene(set);
+}
+
+void Grid::build_minmax(gpu::Commands& commands) const {
+    commands.bind(minmax_blocks_, {});
+    commands.dispatch(info_.blocks.x, info_.blocks.y, info_.blocks.z);
+    commands.barrier();
+    for (uint32_t level = 1; level < info_.bricks.w; ++level) {
+        commands.bind(minmax_level_, {});
+        commands.push(level);
+        const glm::uvec3 groups = divide_up(info_.levels[level], glm::uvec3(4));
+        commands.dispatch(groups.x, groups.y, groups.z);
+        commands.barrier();
+    }
+}
+
+void Grid::upload(const Volume& volume) {
+    const uint64_t slice = uint64_t{plan_.extent(0).x} * plan_.extent(0).y * stored_.bytes();
+    const uint64_t all = slice * plan_.extent(0).z;
+    gpu::Buffer staging(device_, std::max(slice, std::min(all, STAGING_BYTES)),
+                        gpu::Buffer::Memory::host, "uploading");
+    for (uint32_t brick = 0; brick < plan_.count(); ++brick) upload_brick(volume, brick, staging);
+}
+
+void Grid::upload_brick(const Volume& volume, uint32_t brick, gpu::Buffer& staging) {
+    const glm::uvec3 origin = plan_.origin(brick), extent = plan_.extent(brick);
+    const uint64_t row_bytes = uint64_t{extent.x} * stored_.bytes();
+    const auto slices_at_once = uint32_t(std::min<uint64_t>(staging.bytes() / (row_bytes * extent.y), extent.z));
+    for (uint32_t z = 0; z < extent.z; z += slices_at_once) {
+        const uint32_t slices = std::min(slices_at_once, extent.z - z);
+        std::byte* out = staging.data<std::byte>();
+        for (uint32_t k = z; k < z + slices; ++k)
+            for (uint32_t j = 0; j < extent.y; ++j, out += row_bytes) {
+                const uint64_t row = uint64_t{origin.z + k} * volume.dims[1] + origin.y + j;
+                store_voxels(volume, stored_, row * volume.dims[0] + origin.x, extent.x, out, range_);
+            }
+        gpu::run_once(device_, [&](gpu::Commands& commands) {
+            if (z == 0) commands.discard_to_general(textures_[brick]);
+            commands.copy_to_texture(staging, textures_[brick], z, slices);
+        });
+    }
+}
+
+void Grid::sample_on_gpu(const Volume& volume) {
+    struct Push {
+        field::FieldSampling sampling;
+        glm::uvec3 origin;
+    };
+    const auto sampler = gpu::Pipeline::compute(
+        device_, {"sample field", scene_layout_, {gpu::Kind::image}, sizeof(Push), {stored_.bits, 0}},
+        sample_field_comp);
+    gpu::run_once(device_, [&](gpu::Commands& commands) {
+        for (uint32_t i = 0; i < plan_.count(); ++i) commands.discard_to_general(textures_[i]);
+        begin_frame(commands, {});
+        for (uint32_t i = 0; i < plan_.count(); ++i) {
+            const glm::uvec3 groups = divide_up(plan_.extent(i), glm::uvec3(8, 8, 1));
+            commands.bind(sampler, {textures_[i]});
+            commands.push(Push{field_sampling(volume), plan_.origin(i)});
+            commands.dispatch(groups.x, groups.y, groups.z);
+        }
+    });
+}
+
+void Grid::find_range() {
+    // The root of the pyramid holds the range, except that floats' least value may stand for voxels that
+    // are not finite: then the range is what the upload saw.
+    gpu::Buffer root(device_, 8, gpu::Buffer::Memory::host, "the range");
+    gpu::run_once(device_, [&](gpu::Commands& commands) {
+        commands.update(info_buffer_, 0, &info_, sizeof(info_));
+        begin_frame(commands, {});
+        build_minmax(commands);
+        const uint64_t bytes = 2 * stored_.bytes();
+        commands.copy(minmax_, info_.levels[info_.bricks.w - 1].w * bytes & ~uint64_t{3}, root, 0,
+                      std::max<uint64_t>(bytes, 4));
+    });
+    if (stored_.bits == 8) {
+        const uint8_t* bytes = root.data<uint8_t>() + 2 * (info_.levels[info_.bricks.w - 1].w & 1);
+        range_ = {float(bytes[0]), float(bytes[1])};
+    } else if (stored_.bits == 16) {
+        range_ = {float(root.data<uint16_t>()[0]), float(root.data<uint16_t>()[1])};
+    } else if (range_.least > range_.greatest && root.data<float>()[1] != NOT_FINITE) {
+        range_ = {root.data<float>()[0], root.data<float>()[1]};
+    }
+    info_.range = {range_.least, range_.greatest, 0, 0};
+    gpu::run_once(device_, [&](gpu::Commands& commands) {
+        commands.update(info_buffer_, 0, &info_, sizeof(info_));
+    });
+}
+
+}  // namespace isorast

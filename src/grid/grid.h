@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Grid: a volume resident on the GPU as 3D textures (bricks), and the min-max of its blocks with a pyramid
+// up to the root (Kreskowski 2022, section 3.3). It also owns descriptor set 0, which every pass sees.
+#pragma once
+#include <isorast/volume.h>
+
+#include <array>
+#include <vector>
+
+#include "gpu/commands.h"
+#include "gpu/pipeline.h"
+#include "gpu/resources.h"
+#include "grid/bricks.h"
+#include "grid/stored.h"
+#include "shaders/shared.h"
+
+namespace isorast {
+
+// What a volume will take on the device, before anything is allocated.
+struct GridPlan {
+    BrickPlan bricks;
+    uint64_t volume_bytes = 0, minmax_bytes = 0;
+};
+GridPlan plan_grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_side);
+
+class Grid {
+public:
+    Grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_side);
+    ~Grid();
+    Grid(const Grid&) = delete;
+    Grid& operator=(const Grid&) = delete;
+
+    const gpu::Device& device() const { return device_; }
+    const shared::GridInfo& info() const { return info_; }
+    const Stored& stored() const { return stored_; }
+    const BrickPlan& bricks() const { return plan_; }
+    uint64_t volume_bytes() const;
+    uint64_t extra_bytes() const;
+    std::array<double, 2> value_range() const;  // data units; NaN when no voxel is finite
+
+    VkDescriptorSetLayout scene_layout() const { return scene_layout_; }
+    // Pipelines start from this: set 0's layout and the constants that scene.glsl wants, then `more`.
+    gpu::PipelineInfo pipeline_info(const char* name, std::vector<gpu::Kind> bindings,
+                                    uint32_t push_bytes, std::vector<uint32_t> more = {}) const;
+    // Makes set 0 and gives it to the commands' passes; `frame` becomes the frame's uniform block.
+    void begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) const;
+    // Rebuilds the min-max pyramid from the bricks.
+    void build_minmax(gpu::Commands& commands) const;
+
+private:
+    void make_scene_layout();
+    void upload(const Volume& volume);
+    void upload_brick(const Volume& volume, uint32_t brick, gpu::Buffer& staging);
+    void sample_on_gpu(const Volume& volume);
+    void find_range();
+
+    const gpu::Device& device_;
+    Stored stored_;
+    BrickPlan plan_;
+    shared::GridInfo info_{};
+    StoredRange range_;
+    std::vector<gpu::Texture> textures_;
+    gpu::Sampler sampler_;
+    gpu::Buffer minmax_, info_buffer_, frame_buffer_;
+    VkDescriptorSetLayout scene_layout_ = VK_NULL_HANDLE;
+    gpu::Pipeline minmax_blocks_, minmax_level_;
+};
+
+}  // namespace isorast

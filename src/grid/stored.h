@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Stored values: what the GPU holds in place of raw voxels. The order of data values is always kept: a
+// greater stored value is a greater data value, also when the slope is negative.
+#pragma once
+#include <isorast/volume.h>
+#include <vulkan/vulkan.h>
+
+#include <limits>
+
+namespace isorast {
+
+// raw = base + sign * stored; value = raw * slope + intercept.
+struct Stored {
+    VkFormat format = VK_FORMAT_R8_UNORM;
+    uint32_t bits = 8;  // 8, 16: integers from 0; 32: floats
+    double base = 0, sign = 1;
+    double slope = 1, intercept = 0;
+
+    uint32_t bytes() const { return bits / 8; }
+    double value(double stored) const { return (base + sign * stored) * slope + intercept; }
+    float from_value(double value) const {
+        return float(((value - intercept) / slope - base) * sign);
+    }
+};
+
+// 8- and 16-bit integers stay as they are, signed ones offset; wider integers and f64 become floats
+// above their least value, so that small differences survive; f32 stays.
+Stored stored_as(const Volume& volume);
+
+// Voxels that are not finite are stored as this, below every isovalue: outside.
+inline constexpr float NOT_FINITE = std::numeric_limits<float>::lowest();
+
+// Least and greatest of the finite stored values seen so far.
+struct StoredRange {
+    float least = std::numeric_limits<float>::infinity();
+    float greatest = -std::numeric_limits<float>::infinity();
+};
+
+// Writes `count` voxels from index `first` on, as stored, to `out`; widens `range` (floats only).
+void store_voxels(const Volume& volume, const Stored& stored, uint64_t first, uint32_t count,
+                  std::byte* out, StoredRange& range);
+
+}  // namespace isorast

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// The frame: begin, prepare (if the isovalues changed), the technique's passes, shade.
+#include <fmt/format.h>
+#include <isorast/error.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/device.h"
+#include "image/state.h"
+
+namespace isorast {
+
+namespace {
+
+std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
+    std::string known;
+    for (const TechniqueEntry& entry : technique_registry()) {
+        if (entry.name == context.options.technique) return entry.make(context);
+        known += (known.empty() ? "" : ", ") + entry.name;
+    }
+    throw Error(fmt::format("technique: expected one of {}, found '{}'", known, context.options.technique));
+}
+
+const Volume& checked(const Volume& volume) {
+    check(volume);
+    return volume;
+}
+
+}  // namespace
+
+Renderer::State::State(Gpu& gpu, const Volume& volume, const RendererOptions& options)
+    : device_(gpu.device()),
+      options_(options),
+      placement_{volume.affine, volume.dims},
+      grid_(device_, checked(volume), options.max_brick_side),
+      technique_(make_technique({grid_, options_})),
+      shade_(grid_) {
+    for (uint32_t i = 0; i < std::max(options.frames_in_flight, 1u); ++i)
+        submissions_.push_back(std::make_unique<gpu::Submission>(device_));
+    counters_readback_ = gpu::Buffer(device_, sizeof(shared::Counters), gpu::Buffer::Memory::host, "counters");
+}
+
+Renderer::State::~State() {
+    for (auto& submission : submissions_) submission->wait();
+}
+
+void Renderer::State::record(gpu::Commands& commands, const Frame& frame) {
+    check(frame);
+    if (frame.shading == Shading::forward && !technique_->can_shade_forward())
+        throw Error(fmt::format("shading: {} cannot shade forward; use gooch", options_.technique));
+    const bool several = frame.isovalues.size() > 1;
+    if (!target_.fits(frame.size, several)) {
+        for (auto& submission : submissions_) submission->wait();
+        target_.fit(device_, commands, frame.size, technique_->rasterizer() == Rasterizer::hardware, several);
+    }
+    commands.barrier();
+    grid_.begin_frame(commands, make_frame_info(frame, placement_, grid_.stored()));
+
+    std::vector<float> isovalues;
+    for (double isovalue : frame.isovalues) isovalues.push_back(grid_.stored().from_value(isovalue));
+    if (!is_prepared_ || isovalues != prepared_) {
+        technique_->prepare(commands, isovalues);
+        prepared_ = isovalues;
+        is_prepared_ = true;
+    }
+    technique_->record(commands, frame, target_);
+    shade_.record(commands, frame, target_);
+}
+
+Image Renderer::State::render(const Frame& frame) {
+    gpu::Submission& submission = *submissions_.front();
+    gpu::Commands commands = submission.begin();
+    record(commands, frame);
+    fit_readback(frame);
+    commands.copy_to_buffer(target_.color, color_readback_);
+    if (frame.want_depth) commands.copy_to_buffer(shade_.distances(), depth_readback_);
+    if (technique_->counters())
+        commands.copy(*technique_->counters(), 0, counters_readback_, 0, sizeof(shared::Counters));
+    submission.submit();
+    submission.wait();
+    collect_stats(submission.slot());
+    return read_back(frame);
+}
+
+std::vector<std::vector<gpu::TimedPass>> Renderer::State::run(const std::vector<Frame>& frames) {
+    std::vector<std::vector<gpu::TimedPass>> times(frames.size());
+    const size_t in_flight = submissions_.size();
+    for (size_t i = 0; i < frames.size() + in_flight; ++i) {
+        gpu::Submission& submission = *submissions_[i % in_flight];
+        submission.wait();
+        if (i >= in_flight) times[i - in_flight] = submission.slot().times();
+        if (i >= frames.size()) continue;
+        gpu::Commands commands = submission.begin();
+        record(commands, frames[i]);
+        submission.submit();
+    }
+    return times;
+}
+
+RecordedFrame Renderer::State::record_for_host(VkCommandBuffer handle, const Frame& frame, uint32_t slot) {
+    if (slot >= submissions_.size())
+        throw Error(fmt::format("record: expected a slot below {} (frames_in_flight), found {}",
+                                submissions_.size(), slot));
+    while (host_slots_.size() <= slot) host_slots_.push_back(std::make_unique<gpu::Slot>(device_));
+    host_slots_[slot]->reset();
+    gpu::Commands commands(device_, handle, *host_slots_[slot]);
+    record(commands, frame);
+    return {target_.color.handle(), target_.color.view(), target_.depth.handle(), target_.depth.view(),
+            target_.depth.format()};
+}
+
+void Renderer::State::fit_readback(const Frame& frame) {
+    const uint64_t bytes = uint64_t{4} * frame.size.width * frame.size.height;
+    const auto fit = [&](gpu::Buffer& buffer) {
+        if (buffer.bytes() != bytes)
+            buffer = gpu::Buffer(device_, bytes, gpu::Buffer::Memory::host, "reading the picture back");
+    };
+    fit(color_readback_);
+    if (frame.want_depth) fit(depth_readback_);
+}
+
+Image Renderer::State::read_back(const Frame& frame) const {
+    Image image{.size = frame.size};
+    const size_t pixels = size_t{frame.size.width} * frame.size.height;
+    image.rgba.resize(4 * pixels);
+    std::memcpy(image.rgba.data(), color_readback_.data<uint8_t>(), image.rgba.size());
+    if (frame.want_depth) {
+        image.depth.resize(pixels);
+        std::memcpy(image.depth.data(), depth_readback_.data<float>(), 4 * pixels);
+    }
+    return image;
+}
+
+void Renderer::State::collect_stats(const gpu::Slot& slot) {
+    stats_ = {};
+    const auto times = slot.times();
+    for (const gpu::TimedPass& pass : times) {
+        // Surfaces repeat passes: one line each, summed.
+        auto known = std::ranges::find(stats_.passes, pass.name, &PassTime::name);
+        if (known == stats_.passes.end()) known = stats_.passes.insert(known, {pass.name, 0});
+        known->milliseconds += pass.end_ms - pass.begin_ms;
+    }
+    if (!times.empty()) stats_.total_ms = times.back().end_ms;
+    stats_.blocks = grid_.info().blocks.w;
+    if (technique_->counters()) {
+        const auto& counters = *counters_readback_.data<shared::Counters>();
+        stats_.blocks_active = counters.blocks_active;
+        stats_.blocks_drawn = counters.blocks_drawn;
+    }
+    stats_.volume_bytes = grid_.volume_bytes();
+    stats_.extra_bytes = grid_.extra_bytes() + technique_->gpu_bytes();
+    stats_.target_bytes = target_.bytes();
+    stats_.bricks = grid_.bricks().count();
+}
+
+Renderer::Renderer(Gpu& gpu, const Volume& volume, const RendererOptions& options)
+    : state_(std::make_unique<State>(gpu, volume, options)) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+Image Renderer::render(const Frame& frame) { return state_->render(frame); }
+const FrameStats& Renderer::stats() const { return state_->stats(); }
+std::array<double, 2> Renderer::value_range() const { return state_->grid().value_range(); }
+Rasterizer Renderer::rasterizer() const { return state_->technique().rasterizer(); }
+
+RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame, uint32_t slot) {
+    return renderer.state().record_for_host(commands, frame, slot);
+}
+
+std::vector<std::string> techniques() {
+    std::vector<std::string> names;
+    for (const TechniqueEntry& entry : technique_registry()) names.push_back(entry.name);
+    return names;
+}
+
+std::string what_does_not_fit(const Gpu& gpu, const Volume& volume, const RendererOptions& options) {
+    const gpu::Device& device = gpu.device();
+    const GridPlan plan = plan_grid(device, volume, options.max_brick_side);
+    if (plan.bricks.count() > shared::MAX_BRICKS)
+        return fmt::format("{}: needs {} bricks on {}, {} more than fit", volume.name, plan.bricks.count(),
+                           device.info().name, plan.bricks.count() - shared::MAX_BRICKS);
+    const uint64_t needed = plan.volume_bytes + 2 * plan.minmax_bytes, has = device.info().memory_bytes;
+    if (needed <= has) return "";
+    return fmt::format("{}: needs {:.2f} GiB on {}, {:.2f} GiB more than its {:.2f} GiB; use another device "
+                       "or a smaller volume", volume.name, double(needed) / (1 << 30), device.info().name,
+                       double(needed - has) / (1 << 30), double(has) / (1 << 30));
+}
+
+}  // namespace isorast

@@ -1,0 +1,109 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Workgroup: 8x8 pixels. Thread: one pixel. Out: its colour and its distance, from the technique's depth:
+// unproject, move the hit onto the trilinear surface, take the gradient, shade. One pass for all techniques.
+#include "shaders/scene.glsl"
+#include "shaders/volume.glsl"
+#include "shaders/ray.glsl"
+#include "shaders/cell_root.glsl"
+#include "shaders/shading.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 2) const bool WRITE_COLOR = true;     // and refine the hit
+layout(constant_id = 3) const bool WRITE_DISTANCE = false;
+
+layout(set = 1, binding = 0) uniform texture2D depth;
+layout(set = 1, binding = 1) uniform utexture2D surface_numbers;
+layout(set = 1, binding = 2, rgba8) writeonly uniform image2D color;
+layout(set = 1, binding = 3, r32f) writeonly uniform image2D distances;
+
+// As Shading in renderer.h.
+const uint GOOCH = 0, PHONG = 1, NORMALS = 2, DEPTH = 3, BLOCKS = 4;
+
+// The ray's way through a cell, as t from and to.
+vec2 span_in_cell(Ray ray, ivec3 cell) {
+    const vec3 low = (vec3(cell) - ray.origin) / ray.direction;
+    const vec3 high = (vec3(cell + 1) - ray.origin) / ray.direction;
+    const vec3 enter = min(low, high), leave = max(low, high);
+    return vec2(max(max(enter.x, enter.y), enter.z), min(min(leave.x, leave.y), leave.z));
+}
+
+bool crossing_in_cell(Ray ray, ivec3 cell, vec2 span, float t, float iso, out float crossing) {
+    float corners[8];
+    load_cell(cell, corners);
+    const vec3 from = ray.origin + span.x * ray.direction - vec3(cell);
+    const vec3 to = ray.origin + span.y * ray.direction - vec3(cell);
+    float s;
+    if (!nearest_crossing(cell_line(corners, from, to, iso), (t - span.x) / (span.y - span.x), s))
+        return false;
+    crossing = mix(span.x, span.y, s);
+    return true;
+}
+
+// The trilinear surface nearest to t along the ray, in the cell there or else in the cells before and
+// after it; t itself where the ray misses the trilinear surface (at silhouettes).
+float refine_hit(Ray ray, float t, float iso) {
+    const ivec3 cell = cell_of(ray.origin + t * ray.direction);
+    const vec2 span = span_in_cell(ray, cell);
+    if (!(span.x < span.y)) return t;
+    float best;
+    if (crossing_in_cell(ray, cell, span, t, iso, best)) return best;
+    const float voxel_step = 1.0 / length(ray.direction);  // one voxel, as a difference of t
+    best = t;
+    float nearest = voxel_step;
+    for (int side = 0; side < 2; ++side) {
+        const float beyond = side == 0 ? span.x - 0.01 * voxel_step : span.y + 0.01 * voxel_step;
+        const ivec3 neighbour = cell_of(ray.origin + beyond * ray.direction);
+        const vec2 there = span_in_cell(ray, neighbour);
+        float crossing;
+        if (neighbour == cell || !(there.x < there.y)) continue;
+        if (crossing_in_cell(ray, neighbour, there, t, iso, crossing) && abs(crossing - t) < nearest) {
+            best = crossing;
+            nearest = abs(crossing - t);
+        }
+    }
+    return best;
+}
+
+// A colour for each block, well apart from its neighbours'.
+vec3 block_color(ivec3 block) {
+    uint h = uint(block.x) * 0x9e3779b1u ^ uint(block.y) * 0x85ebca77u ^ uint(block.z) * 0xc2b2ae3du;
+    h = (h ^ h >> 15) * 0x2c1b3c6du;
+    h ^= h >> 13;
+    return 0.3 + 0.6 * vec3(h & 255u, h >> 8 & 255u, h >> 16 & 255u) / 255.0;
+}
+
+vec4 shade(Ray ray, float t, vec3 surface_color) {
+    const vec3 p = ray.origin + t * ray.direction;
+    const vec3 direction = world_direction(ray.direction);
+    if (frame.size.w == DEPTH) {
+        const float near = frame.depth_range.x, far = frame.depth_range.y;
+        return vec4(vec3(mix(0.95, 0.05, clamp((t - near) / (far - near), 0.0, 1.0))), 1.0);
+    }
+    const vec3 normal = world_normal(field_gradient(p), ray.direction);
+    if (frame.size.w == NORMALS) return vec4(0.5 + 0.5 * normal, 1.0);
+    if (frame.size.w == BLOCKS)
+        return vec4(phong(block_color(cell_of(p) / int(BLOCK)), normal, direction), 1.0);
+    if (frame.size.w == PHONG) return vec4(phong(surface_color, normal, direction), 1.0);
+    return vec4(gooch(surface_color, normal, direction), 1.0);
+}
+
+void main() {
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(frame.size.xy)))) return;
+    const float z = texelFetch(depth, pixel, 0).r;
+    vec4 result = frame.background;
+    float t = uintBitsToFloat(0x7f800000u);  // infinity
+    if (z > 0.0) {
+        const Ray ray = pixel_ray(vec2(pixel) + 0.5);
+        t = view_depth(z);
+        if (WRITE_COLOR) {
+            const uint number = frame.size.z > 1 ? texelFetch(surface_numbers, pixel, 0).r : 0;
+            t = refine_hit(ray, t, frame.surfaces[number].w);
+            result = shade(ray, t, frame.surfaces[number].rgb);
+        }
+    }
+    if (WRITE_COLOR) imageStore(color, pixel, result);
+    if (WRITE_DISTANCE) imageStore(distances, pixel, vec4(t));
+}

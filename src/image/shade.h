@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Shade: the one pass that turns any technique's depth into the picture.
+#pragma once
+#include <isorast/renderer.h>
+
+#include "gpu/commands.h"
+#include "grid/grid.h"
+#include "image/target.h"
+
+namespace isorast {
+
+class Shade {
+public:
+    explicit Shade(const Grid& grid);
+    // Writes target.color (unless the technique did: Shading::forward) and, if wanted, the distances.
+    void record(gpu::Commands& commands, const Frame& frame, const Target& target);
+    // R32_SFLOAT, valid after record() with want_depth.
+    const gpu::Texture& distances() const { return distances_; }
+
+private:
+    const Grid& grid_;
+    gpu::Pipeline color_, color_and_distance_, distance_;
+    gpu::Texture distances_;
+};
+
+}  // namespace isorast

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Renderer's inside: the grid, one technique, the target, and the frames in flight.
+#pragma once
+#include <isorast/embed.h>
+
+#include <memory>
+#include <vector>
+
+#include "gpu/commands.h"
+#include "grid/grid.h"
+#include "image/shade.h"
+#include "image/target.h"
+#include "image/view.h"
+#include "techniques/technique.h"
+
+namespace isorast {
+
+class Renderer::State {
+public:
+    State(Gpu& gpu, const Volume& volume, const RendererOptions& options);
+    ~State();
+
+    // One frame into the caller's commands.
+    void record(gpu::Commands& commands, const Frame& frame);
+    Image render(const Frame& frame);
+    RecordedFrame record_for_host(VkCommandBuffer commands, const Frame& frame, uint32_t slot);
+    // Submits frames without reading them back, several in flight; their passes' times, in order.
+    std::vector<std::vector<gpu::TimedPass>> run(const std::vector<Frame>& frames);
+
+    const Grid& grid() const { return grid_; }
+    const Technique& technique() const { return *technique_; }
+    const FrameStats& stats() const { return stats_; }
+
+private:
+    Image read_back(const Frame& frame) const;
+    void fit_readback(const Frame& frame);
+    void collect_stats(const gpu::Slot& slot);
+
+    const gpu::Device& device_;
+    RendererOptions options_;
+    Placement placement_;
+    Grid grid_;
+    std::unique_ptr<Technique> technique_;
+    Shade shade_;
+    Target target_;
+    std::vector<float> prepared_;  // the isovalues that the technique is prepared for
+    bool is_prepared_ = false;
+    std::vector<std::unique_ptr<gpu::Submission>> submissions_;
+    std::vector<std::unique_ptr<gpu::Slot>> host_slots_;
+    gpu::Buffer color_readback_, depth_readback_, counters_readback_;
+    FrameStats stats_;
+};
+
+}  // namespace isorast

@@ -1,0 +1,45 @@
+// Descriptor set 0: the frame, the grid, its voxels, its min-max pyramid. Include first.
+// Define SCENE_WRITES_MINMAX before including to write the pyramid.
+#extension GL_EXT_nonuniform_qualifier : require
+#extension GL_EXT_shader_16bit_storage : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "shaders/shared.h"
+
+layout(constant_id = 0) const uint VOXEL_BITS = 8;  // 8 and 16: integers, seen as [0, 1]; 32: floats
+layout(constant_id = 1) const bool BRICKED = false;
+
+layout(set = 0, binding = BIND_FRAME, std140) uniform FrameBlock { FrameInfo frame; };
+layout(set = 0, binding = BIND_GRID, std140) uniform GridBlock { GridInfo grid; };
+layout(set = 0, binding = BIND_BRICKS) uniform texture3D bricks[MAX_BRICKS];
+layout(set = 0, binding = BIND_SAMPLER) uniform sampler linear_sampler;
+
+#ifdef SCENE_WRITES_MINMAX
+#define MINMAX_ACCESS
+#else
+#define MINMAX_ACCESS readonly
+#endif
+// The same buffer thrice: a node is 2 bytes for 8-bit voxels, 4 for 16-bit, 8 for floats.
+layout(set = 0, binding = BIND_MINMAX, std430) MINMAX_ACCESS buffer MinMax8 { uint16_t minmax_8[]; };
+layout(set = 0, binding = BIND_MINMAX, std430) MINMAX_ACCESS buffer MinMax16 { uint minmax_16[]; };
+layout(set = 0, binding = BIND_MINMAX, std430) MINMAX_ACCESS buffer MinMax32 { vec2 minmax_32[]; };
+
+// The least and greatest stored value of a node of the pyramid.
+vec2 node_range(uint node) {
+    if (VOXEL_BITS == 8) {
+        const uint bits = uint(minmax_8[node]);
+        return vec2(bits & 0xffu, bits >> 8);
+    }
+    if (VOXEL_BITS == 16) {
+        const uint bits = minmax_16[node];
+        return vec2(bits & 0xffffu, bits >> 16);
+    }
+    return minmax_32[node];
+}
+
+uint node_index(uint level, uvec3 node) {
+    const uvec4 nodes = grid.levels[level];
+    return nodes.w + node.x + nodes.x * (node.y + nodes.y * node.z);
+}
+
+// The one tie rule: a value equal to the isovalue is inside.
+bool crosses(vec2 range, float iso) { return range.x < iso && range.y >= iso; }

@@ -1,0 +1,25 @@
+// Shading models. Colours are sRGB-encoded and mixed as they are, as the models' authors did.
+
+vec3 world_direction(vec3 direction) {
+    return normalize(vec3(dot(frame.world_x.xyz, direction), dot(frame.world_y.xyz, direction),
+                          dot(frame.world_z.xyz, direction)));
+}
+
+float highlight(vec3 normal, vec3 direction, float exponent) {
+    return pow(max(dot(reflect(direction, normal), frame.light.xyz), 0.0), exponent);
+}
+
+// Gooch et al. 1998, section 4.1: from cool away from the light to warm towards it, with their constants
+// b = y = 0.4, alpha = 0.2, beta = 0.6; and a soft highlight.
+vec3 gooch(vec3 color, vec3 normal, vec3 direction) {
+    const vec3 cool = vec3(0.0, 0.0, 0.4) + 0.2 * color;
+    const vec3 warm = vec3(0.4, 0.4, 0.0) + 0.6 * color;
+    const float warmth = 0.5 + 0.5 * dot(normal, frame.light.xyz);
+    return mix(cool, warm, warmth) + 0.25 * highlight(normal, direction, 32.0);
+}
+
+vec3 phong(vec3 color, vec3 normal, vec3 direction) {
+    const float diffuse = max(dot(normal, frame.light.xyz), 0.0);
+    const float facing = max(-dot(normal, direction), 0.0);  // a head light fills the shadows
+    return color * (0.12 + 0.68 * diffuse + 0.2 * facing) + 0.3 * highlight(normal, direction, 48.0);
+}

@@ -1,0 +1,101 @@
+// Voxels and the trilinear field between them. Stored values: 0..255, 0..65535, or floats.
+// Everything here fetches voxels and interpolates in 32-bit arithmetic: the fixed-point filters of
+// samplers (8 bits of weight) are for marching only (sample_filtered).
+
+// A brick and the voxel that its texel 0 holds.
+struct Brick {
+    uint index;
+    ivec3 origin;
+};
+
+// The brick that holds the cell with this lowest corner, its 8 voxels and an apron of one voxel around.
+Brick brick_of(ivec3 cell) {
+    if (!BRICKED) return Brick(0u, ivec3(0));
+    const ivec3 where = min(cell / ivec3(grid.brick_cells.xyz), ivec3(grid.bricks.xyz) - 1);
+    const uint index = uint(where.x) + grid.bricks.x * (uint(where.y) + grid.bricks.y * uint(where.z));
+    return Brick(index, max(where * ivec3(grid.brick_cells.xyz) - 1, 0));
+}
+
+// 8- and 16-bit voxels come as fractions: rounding gives back the very integer, so that ties are exact.
+float stored_value(float texel) {
+    if (VOXEL_BITS == 8) return round(texel * 255.0);
+    if (VOXEL_BITS == 16) return round(texel * 65535.0);
+    return texel;
+}
+
+float voxel(Brick brick, ivec3 position) {
+    const ivec3 texel = position - brick.origin;
+    return stored_value(BRICKED ? texelFetch(bricks[nonuniformEXT(brick.index)], texel, 0).r
+                                : texelFetch(bricks[0], texel, 0).r);
+}
+
+ivec3 clamp_to_volume(ivec3 position) { return clamp(position, ivec3(0), ivec3(grid.voxels.xyz) - 1); }
+
+// The lowest corner of the cell that holds p.
+ivec3 cell_of(vec3 p) { return clamp(ivec3(floor(p)), ivec3(0), max(ivec3(grid.voxels.xyz) - 2, 0)); }
+
+// The 8 corners of a cell, corner c at (c & 1, c >> 1 & 1, c >> 2).
+void load_cell(ivec3 cell, out float corners[8]) {
+    const Brick brick = brick_of(cell);
+    for (int c = 0; c < 8; ++c) corners[c] = voxel(brick, cell + ivec3(c & 1, c >> 1 & 1, c >> 2));
+}
+
+float trilinear(float corners[8], vec3 f) {
+    const vec4 x = mix(vec4(corners[0], corners[2], corners[4], corners[6]),
+                       vec4(corners[1], corners[3], corners[5], corners[7]), f.x);
+    const vec2 y = mix(x.xz, x.yw, f.y);
+    return mix(y.x, y.y, f.z);
+}
+
+// Through the sampler: fast, with weights of 8 bits. p within the volume.
+float sample_filtered(Brick brick, vec3 p) {
+    const vec3 texel = p - vec3(brick.origin) + 0.5;
+    const float scale = VOXEL_BITS == 8 ? 255.0 : VOXEL_BITS == 16 ? 65535.0 : 1.0;
+    if (BRICKED) {
+        const vec3 size = vec3(textureSize(sampler3D(bricks[nonuniformEXT(brick.index)], linear_sampler), 0));
+        return scale * textureLod(sampler3D(bricks[nonuniformEXT(brick.index)], linear_sampler),
+                                  texel / size, 0.0).r;
+    }
+    return scale * textureLod(sampler3D(bricks[0], linear_sampler), texel / vec3(grid.voxels.xyz), 0.0).r;
+}
+
+// The gradient in voxel space at a voxel: central differences, one-sided at the volume's border.
+// Voxels that are not finite count as the least finite value, so that normals beside them stay sane.
+vec3 voxel_gradient(Brick brick, ivec3 position) {
+    vec3 gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+        ivec3 step = ivec3(0);
+        step[axis] = 1;
+        const ivec3 above = clamp_to_volume(position + step), below = clamp_to_volume(position - step);
+        const float difference = max(voxel(brick, above), grid.range.x) -
+                                 max(voxel(brick, below), grid.range.x);
+        gradient[axis] = difference / float(max(above[axis] - below[axis], 1));
+    }
+    return gradient;
+}
+
+// The gradient at p: the voxels' gradients, interpolated; the same as central differences of the
+// trilinear field at a distance of one voxel.
+vec3 field_gradient(vec3 p) {
+    const ivec3 cell = cell_of(p);
+    const vec3 f = p - vec3(cell);
+    const Brick brick = brick_of(cell);
+    vec3 gradient = vec3(0.0);
+    for (int c = 0; c < 8; ++c) {
+        const ivec3 corner = ivec3(c & 1, c >> 1 & 1, c >> 2);
+        const vec3 w = mix(1.0 - f, f, vec3(corner));
+        gradient += w.x * w.y * w.z * voxel_gradient(brick, cell + corner);
+    }
+    return gradient;
+}
+
+// The unit normal in the world that faces against `direction` (voxel space), from a gradient in voxel space.
+vec3 world_normal(vec3 gradient, vec3 direction) {
+    const vec3 n = vec3(dot(frame.normal_x.xyz, gradient), dot(frame.normal_y.xyz, gradient),
+                        dot(frame.normal_z.xyz, gradient));
+    const vec3 towards = -vec3(dot(frame.world_x.xyz, direction), dot(frame.world_y.xyz, direction),
+                               dot(frame.world_z.xyz, direction));
+    const float length_squared = dot(n, n);
+    if (!(length_squared > 0.0)) return normalize(towards);
+    return n * inversesqrt(length_squared) * (dot(n, towards) < 0.0 ? -1.0 : 1.0);
+}

@@ -1,0 +1,20 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Thread: one fragment. Out: its colour, from the mesh shader's normals: the paper's own way to shade
+// (Kreskowski 2022, section 4, "Shading").
+#include "shaders/scene.glsl"
+#include "shaders/volume.glsl"
+#include "shaders/shading.glsl"
+
+layout(location = 0) in vec3 position;  // voxel space
+layout(location = 1) in vec3 gradient;
+layout(location = 0) out vec4 color;
+layout(push_constant) uniform Push { uint chunk, surface; };
+
+void main() {
+    const vec2 ndc = 2.0 * gl_FragCoord.xy / vec2(frame.size.xy) - 1.0;
+    const vec3 direction = frame.ray_direction.xyz + ndc.x * frame.ray_direction_x.xyz +
+                           ndc.y * frame.ray_direction_y.xyz;
+    color = vec4(gooch(frame.surfaces[surface].rgb, world_normal(gradient, direction),
+                       world_direction(direction)), 1.0);
+}

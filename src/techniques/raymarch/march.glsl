@@ -1,0 +1,132 @@
+// Min-max-octree ray marching: the paper's reference (Kreskowski 2022, section 4, "Ray-marching
+// Reference" and "Software"): steps of half a cell in blocks that the isovalue crosses, then three
+// bisections. EXACT solves each cell's cubic instead.
+
+layout(constant_id = 2) const bool EXACT = false;
+
+struct March {
+    Ray ray;
+    vec3 inverse;   // 1 / direction
+    float iso;
+    float nudge;    // a step over a boundary, as a difference of t
+    bool known;     // is `inside` known yet?
+    bool inside;    // which side of the surface the ray is on
+    float t;        // how far the ray has come; the hit, once there is one
+};
+
+// The ray is now known to be on this side; true when that means that it has crossed the surface.
+bool crossed_to(inout March march, bool inside) {
+    const bool crossed = march.known && march.inside != inside;
+    march.known = true;
+    march.inside = inside;
+    return crossed;
+}
+
+float exit_of(March march, vec3 low, vec3 high) {
+    const vec3 t = (mix(low, high, greaterThan(march.ray.direction, vec3(0.0))) - march.ray.origin) * march.inverse;
+    return min(min(t.x, t.y), t.z);
+}
+
+vec3 position_at(March march, float t) {
+    return clamp(march.ray.origin + t * march.ray.direction, vec3(0.0), vec3(grid.voxels.xyz) - 1.0);
+}
+
+// The paper's way through a block that the isovalue crosses.
+bool step_through(inout March march, ivec3 block, float end) {
+    const Brick brick = brick_of(block * int(BLOCK));
+    const float step = 0.5 / length(march.ray.direction);
+    float before = march.t;
+    for (float t = march.t; ; t = min(t + step, end)) {
+        const bool was_inside = march.inside;
+        if (crossed_to(march, sample_filtered(brick, position_at(march, t)) >= march.iso)) {
+            float a = before, b = t;
+            for (int i = 0; i < 3; ++i) {
+                const float middle = 0.5 * (a + b);
+                const bool inside = sample_filtered(brick, position_at(march, middle)) >= march.iso;
+                if (inside == was_inside) a = middle;
+                else b = middle;
+            }
+            march.t = 0.5 * (a + b);
+            return true;
+        }
+        if (t >= end) return false;
+        before = t;
+    }
+}
+
+// The exact way: cell after cell, each solved as a cubic.
+bool solve_through(inout March march, ivec3 block, float end) {
+    const Brick brick = brick_of(block * int(BLOCK));
+    const ivec3 low = block * int(BLOCK), high = min(low + int(BLOCK), ivec3(grid.voxels.xyz) - 1) - 1;
+    const ivec3 forward = ivec3(sign(march.ray.direction));
+    ivec3 cell = clamp(ivec3(floor(position_at(march, march.t + march.nudge))), low, high);
+    for (int i = 0; i < 32; ++i) {
+        const float leave = min(max(exit_of(march, vec3(cell), vec3(cell + 1)), march.t), end);
+        float corners[8];
+        float least = 3.4e38, greatest = -3.4e38;
+        for (int c = 0; c < 8; ++c) {
+            corners[c] = voxel(brick, cell + ivec3(c & 1, c >> 1 & 1, c >> 2));
+            least = min(least, corners[c]);
+            greatest = max(greatest, corners[c]);
+        }
+        if (!crosses(vec2(least, greatest), march.iso)) {
+            if (crossed_to(march, least >= march.iso)) return true;
+        } else {
+            const vec3 from = march.ray.origin + march.t * march.ray.direction - vec3(cell);
+            const vec3 to = march.ray.origin + leave * march.ray.direction - vec3(cell);
+            const CellLine line = cell_line(corners, from, to, march.iso);
+            if (!march.known) crossed_to(march, line.cubic.x >= 0.0);
+            float s;
+            if (first_crossing(line, march.inside, s)) {
+                march.t = mix(march.t, leave, s);
+                return true;
+            }
+        }
+        march.t = leave;
+        // Go on to the neighbour behind the face through which the ray leaves.
+        const vec3 t = (vec3(cell + max(forward, 0)) - march.ray.origin) * march.inverse;
+        const int axis = t.x <= t.y && t.x <= t.z ? 0 : t.y <= t.z ? 1 : 2;
+        cell[axis] += forward[axis];
+        if (leave >= end || cell[axis] < low[axis] || cell[axis] > high[axis]) return false;
+    }
+    return false;
+}
+
+// The first crossing of the isovalue along the ray, as t; false if there is none.
+bool first_hit(Ray ray, float iso, out float hit) {
+    // An axis that the ray does not move along gets the least movement that still divides.
+    const vec3 least = vec3(1e-20 + 1e-9 * length(ray.direction));
+    ray.direction = mix(ray.direction, least, lessThan(abs(ray.direction), least));
+    March march = March(ray, 1.0 / ray.direction, iso, 0.0, false, false, 0.0);
+    march.nudge = (1e-4 + 2e-7 * float(grid.voxels.x + grid.voxels.y + grid.voxels.z)) / length(ray.direction);
+
+    const vec3 last = vec3(grid.voxels.xyz) - 1.0;
+    const vec3 a = -ray.origin * march.inverse, b = (last - ray.origin) * march.inverse;
+    const vec3 enter = min(a, b), leave = max(a, b);
+    march.t = max(max(max(enter.x, enter.y), enter.z), frame.depth_range.x);
+    const float end = min(min(min(leave.x, leave.y), leave.z), frame.depth_range.y);
+
+    const uint top = grid.bricks.w - 1;
+    uint level = top;
+    for (int i = 0; i < 65536 && march.t < end; ++i) {
+        const uint shift = 3 + level;
+        const vec3 p = position_at(march, march.t + march.nudge);
+        const uvec3 node = min(uvec3(p) >> shift, grid.levels[level].xyz - 1);
+        const vec2 range = node_range(node_index(level, node));
+        const float node_end = exit_of(march, vec3(node << shift), vec3((node + 1) << shift));
+        const float there = min(max(node_end, march.t + march.nudge), end);
+        if (!crosses(range, iso)) {
+            if (crossed_to(march, range.x >= iso)) break;
+            march.t = there;
+            level = min(level + 1, top);
+        } else if (level > 0) {
+            --level;
+        } else {
+            if (EXACT ? solve_through(march, ivec3(node), there) : step_through(march, ivec3(node), there)) break;
+            march.t = there;
+        }
+        if (march.t >= end) return false;
+    }
+    hit = march.t;
+    return march.t < end && march.known;
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// The table of readers, and which of them takes a file: by the name's ending, else by the first
+// bytes.
+#include <isorast/load.h>
+
+#include <algorithm>
+#include <new>
+
+#include "volume/formats/data.h"
+#include "volume/formats/reader.h"
+
+namespace isorast {
+namespace {
+
+struct Reader {
+    std::string_view name;
+    std::vector<std::string_view> endings;  // lower case
+    std::string_view magic;                 // first bytes; empty: none are typical
+    Volume (*load)(const std::string&, const LoadOptions&);
+};
+
+// Tried in this order.
+std::vector<Reader> readers() {
+    return {
+        {"NRRD", {".nrrd", ".nhdr"}, "NRRD000", load_nrrd},
+        {"MetaImage", {".mha", ".mhd"}, "ObjectType", load_metaimage},
+        {"NIfTI", {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}, "", load_nifti},
+        {"raw", {".raw"}, "", load_raw},
+    };
+}
+
+std::string known_formats() {
+    std::string text;
+    for (const Reader& reader : readers())
+        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", reader.name,
+                            fmt::join(reader.endings, " "));
+    return text;
+}
+
+Reader reader_for(const std::string& path, const LoadOptions& options) {
+    const std::string lower = lowercase(path);
+    const auto table = readers();
+    for (const Reader& reader : table)
+        for (const std::string_view ending : reader.endings)
+            if (lower.ends_with(ending)) return reader;
+    if (options.dims || is_raw_name(path)) return {"raw", {}, "", load_raw};
+    const VoxelBytes start = VoxelBytes::map(path, 0, std::min<uint64_t>(file_size(path), 16));
+    const std::string_view first(reinterpret_cast<const char*>(start.span().data()),
+                                 start.span().size());
+    for (const Reader& reader : table)
+        if (!reader.magic.empty() && first.starts_with(reader.magic)) return reader;
+    fail(path,
+         "unknown format; isorast reads {}, and any file as raw voxels when dimensions and type "
+         "are given",
+         known_formats());
+}
+
+// Keeps the axes' directions. An axis without one (length 0) takes that of the world axis.
+void set_spacing(Volume& volume, std::array<double, 3> spacing) {
+    const auto lengths = volume.affine.spacing();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]))
+            fail(volume.name, "spacing must be positive, found {}", spacing[axis]);
+        for (int row = 0; row < 3; ++row) {
+            double& entry = volume.affine.m[row][axis];
+            if (lengths[axis] > 0)
+                entry *= spacing[axis] / lengths[axis];
+            else
+                entry = row == axis ? spacing[axis] : 0;
+        }
+    }
+}
+
+Volume load_formula(const std::string& name, const LoadOptions& options) {
+    if (options.dims || options.type || options.big_endian || options.offset || options.spacing ||
+        options.time_step)
+        fail(name,
+             "a formula takes all its options in its name, as in sphere:64:type=f32:spacing=1,1,2");
+    return make_procedural(name);
+}
+
+void refuse_raw_options(const Reader& reader, const std::string& path, const LoadOptions& options) {
+    if (reader.load != load_raw && (options.dims || options.type || options.offset != 0))
+        fail(path, "dimensions, type and offset are options for raw files; {} files give their own",
+             reader.name);
+}
+
+}  // namespace
+
+Volume load_volume(const std::string& path, const LoadOptions& options) {
+    if (is_procedural(path)) return load_formula(path, options);
+    try {
+        file_size(path);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}; isorast reads {}", error.what(), known_formats()));
+    }
+    const Reader reader = reader_for(path, options);
+    refuse_raw_options(reader, path, options);
+    try {
+        Volume volume = reader.load(path, options);
+        if (options.spacing) set_spacing(volume, *options.spacing);
+        check(volume);
+        return volume;
+    } catch (const std::bad_alloc&) {
+        fail(path, "there is not enough memory for its voxels");
+    }
+}
+
+}  // namespace isorast

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+// Range, moments and histogram of a volume. 8 and 16 bit voxels are counted per level, and all else
+// follows from the counts; wider types take two passes. Threads share the work in fixed chunks, so
+// the result does not depend on their number. Moments of chunks are merged as in Chan et al. 1979.
+#include <isorast/error.h>
+#include <isorast/volume.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <type_traits>
+
+#include "volume/voxels.h"
+
+namespace isorast {
+namespace {
+
+constexpr uint64_t CHUNK = 1 << 20;  // voxels
+
+// Calls work(worker, chunk, first, last) for every chunk, on all cores.
+template <class Work>
+void for_chunks(uint64_t count, unsigned workers, Work&& work) {
+    std::atomic<uint64_t> next{0};
+    const auto run = [&](unsigned worker) {
+        for (uint64_t chunk = next++; chunk * CHUNK < count; chunk = next++)
+            work(worker, chunk, chunk * CHUNK, std::min(count, (chunk + 1) * CHUNK));
+    };
+    std::vector<std::jthread> threads;
+    for (unsigned worker = 1; worker < workers; ++worker)
+        threads.emplace_back(run, worker);
+    run(0);
+}
+
+unsigned workers_for(uint64_t count) {
+    const uint64_t chunks = (count + CHUNK - 1) / CHUNK;
+    return static_cast<unsigned>(std::clamp<uint64_t>(std::thread::hardware_concurrency(), 1,
+                                                      std::max<uint64_t>(chunks, 1)));
+}
+
+struct Moments {
+    double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum;
+    double mean = 0, squares = 0;  // squares: sum of squared distances from the mean
+    uint64_t finite = 0, not_finite = 0;
+
+    void add(const Moments& other) {
+        not_finite += other.not_finite;
+        if (other.finite == 0) return;
+        const auto a = static_cast<double>(finite), b = static_cast<double>(other.finite);
+        const double distance = other.mean - mean;
+        mean += distance * b / (a + b);
+        squares += other.squares + distance * distance * a * b / (a + b);
+        finite += other.finite;
+        minimum = std::min(minimum, other.minimum);
+        maximum = std::max(maximum, other.maximum);
+    }
+};
+
+// Sums are taken relative to the chunk's first finite value, which keeps their cancellation small.
+template <class T>
+Moments moments_of(const Volume& volume, uint64_t first, uint64_t last) {
+    const std::byte* bytes = volume.bytes.span().data();
+    Moments moments;
+    double shift = 0, sum = 0, squares = 0;
+    for (uint64_t index = first; index < last; ++index) {
+        const double value = load_voxel<T>(bytes, index) * volume.slope + volume.intercept;
+        if (!std::isfinite(value)) {
+            ++moments.not_finite;
+            continue;
+        }
+        if (moments.finite++ == 0) shift = value;
+        sum += value - shift;
+        squares += (value - shift) * (value - shift);
+        moments.minimum = std::min(moments.minimum, value);
+        moments.maximum = std::max(moments.maximum, value);
+    }
+    if (moments.finite == 0) return moments;
+    const auto count = static_cast<double>(moments.finite);
+    moments.mean = shift + sum / count;
+    moments.squares = std::max(0.0, squares - sum * sum / count);
+    return moments;
+}
+
+// Which of `bins` equal bins a value falls into. Halves, so that a range of all doubles cannot
+// overflow.
+struct Binning {
+    Binning(double low, double high, uint32_t count)
+        : minimum(low / 2), range(high / 2 - low / 2), bins(count) {}
+    size_t operator()(double value) const {
+        if (!(range > 0)) return 0;
+        return std::min<size_t>(static_cast<size_t>((value / 2 - minimum) / range * bins),
+                                bins - 1);
+    }
+    double minimum, range;
+    uint32_t bins;
+};
+
+void add_counts(std::vector<uint64_t>& sum, const std::vector<uint64_t>& counts) {
+    for (size_t i = 0; i < sum.size(); ++i)
+        sum[i] += counts[i];
+}
+
+void take(Statistics& result, const Moments& moments) {
+    result.finite = moments.finite;
+    result.not_finite = moments.not_finite;
+    if (moments.finite == 0) return;
+    result.minimum = moments.minimum;
+    result.maximum = moments.maximum;
+    result.mean = moments.mean;
+    result.standard_deviation = std::sqrt(moments.squares / static_cast<double>(moments.finite));
+}
+
+// How often each raw level of an 8 or 16 bit type occurs, level 0 being the type's smallest value.
+template <class T>
+std::vector<uint64_t> count_levels(const Volume& volume) {
+    constexpr size_t levels = size_t{1} << (8 * sizeof(T));
+    constexpr int lowest = std::numeric_limits<T>::min();
+    const unsigned workers = workers_for(volume.voxel_count());
+    // Four tables per worker: runs of equal voxels would else wait for one counter.
+    std::vector<std::vector<uint64_t>> counts(workers, std::vector<uint64_t>(4 * levels));
+    const std::byte* bytes = volume.bytes.span().data();
+    for_chunks(volume.voxel_count(), workers,
+               [&](unsigned worker, uint64_t, uint64_t first, uint64_t last) {
+                   uint64_t* table = counts[worker].data();
+                   for (uint64_t index = first; index < last; ++index)
+                       ++table[(index & 3) * levels +
+                               static_cast<size_t>(load_voxel<T>(bytes, index) - lowest)];
+               });
+    std::vector<uint64_t> sum(levels);
+    for (const auto& table : counts)
+        for (size_t i = 0; i < table.size(); ++i)
+            sum[i % levels] += table[i];
+    return sum;
+}
+
+template <class T>
+Statistics from_levels(const Volume& volume, uint32_t bins) {
+    const std::vector<uint64_t> counts = count_levels<T>(volume);
+    const auto value = [&](size_t level) {
+        return (static_cast<double>(level) + std::numeric_limits<T>::min()) * volume.slope +
+               volume.intercept;
+    };
+    Moments moments;
+    for (size_t level = 0; level < counts.size(); ++level)
+        if (counts[level] != 0)
+            moments.add({value(level), value(level), value(level), 0, counts[level], 0});
+    Statistics result;
+    take(result, moments);
+    result.histogram.resize(bins);
+    const Binning bin(result.minimum, result.maximum, bins);
+    for (size_t level = 0; level < counts.size(); ++level)
+        if (counts[level] != 0) result.histogram[bin(value(level))] += counts[level];
+    return result;
+}
+
+template <class T>
+Statistics from_voxels(const Volume& volume, uint32_t bins) {
+    const uint64_t count = volume.voxel_count();
+    const unsigned workers = workers_for(count);
+    std::vector<Moments> chunks((count + CHUNK - 1) / CHUNK);
+    for_chunks(count, workers, [&](unsigned, uint64_t chunk, uint64_t first, uint64_t last) {
+        chunks[chunk] = moments_of<T>(volume, first, last);
+    });
+    Moments moments;
+    for (const Moments& chunk : chunks)
+        moments.add(chunk);
+    Statistics result;
+    take(result, moments);
+
+    const Binning bin(result.minimum, result.maximum, bins);
+    std::vector<std::vector<uint64_t>> counts(workers, std::vector<uint64_t>(bins));
+    const std::byte* bytes = volume.bytes.span().data();
+    for_chunks(count, workers, [&](unsigned worker, uint64_t, uint64_t first, uint64_t last) {
+        for (uint64_t index = first; index < last; ++index) {
+            const double value = load_voxel<T>(bytes, index) * volume.slope + volume.intercept;
+            if (std::isfinite(value)) ++counts[worker][bin(value)];
+        }
+    });
+    result.histogram.resize(bins);
+    for (const auto& table : counts)
+        add_counts(result.histogram, table);
+    return result;
+}
+
+// A formula's voxels, for a volume that has not been sampled.
+Volume sampled_copy(const Volume& volume) {
+    Volume copy;
+    copy.name = volume.name;
+    copy.dims = volume.dims;
+    copy.type = volume.type;
+    copy.field = volume.field;
+    copy.affine = volume.affine;
+    copy.slope = volume.slope;
+    copy.intercept = volume.intercept;
+    sample(copy);
+    return copy;
+}
+
+}  // namespace
+
+Statistics statistics(const Volume& volume, uint32_t bins) {
+    check(volume);
+    if (bins == 0) throw Error("statistics: a histogram needs at least one bin");
+    if (volume.bytes.span().empty()) return statistics(sampled_copy(volume), bins);
+    return with_type(volume.type, [&](auto zero) {
+        using T = decltype(zero);
+        if constexpr (sizeof(T) <= 2)
+            return from_levels<T>(volume, bins);
+        else
+            return from_voxels<T>(volume, bins);
+    });
+}
+
+double Statistics::percentile(double percent) const {
+    const double wanted = std::clamp(percent, 0.0, 100.0) / 100 * static_cast<double>(finite);
+    double below = 0;
+    for (size_t bin = 0; bin < histogram.size(); ++bin) {
+        const auto count = static_cast<double>(histogram[bin]);
+        if (count > 0 && below + count >= wanted) {
+            const double t = (static_cast<double>(bin) + (wanted - below) / count) /
+                             static_cast<double>(histogram.size());
+            return minimum * (1 - t) + maximum * t;
+        }
+        below += count;
+    }
+    return maximum;
+}
+
+}  // namespace isorast

@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: MIT
+"""The command line from outside: exit codes, messages, help, files. Usage: cli_test.py ISORAST [test...]"""
+import json
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+ISORAST = os.path.abspath(sys.argv.pop(1))
+SMALL = ["--size", "96x64"]
+
+
+def png(width, height, rgba):
+    """The bytes of a PNG of one color."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    rows = (b"\0" + bytes(rgba) * width) * height
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def size_of(data):
+    """Width and height of a PNG."""
+    return struct.unpack(">II", data[16:24])
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="isorast-cli-")
+        self.addCleanup(self.folder.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def write(self, name, data):
+        with open(self.path(name), "wb") as file:
+            file.write(data)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def isorast(self, *words, code=0, binary=False):
+        """Runs the program in the temporary folder; checks its exit code and the form of its errors."""
+        done = subprocess.run([ISORAST, *words], cwd=self.folder.name, capture_output=True, timeout=300)
+        err = done.stderr.decode()
+        self.assertEqual(done.returncode, code, f"{words}: {err}")
+        if code == 2 and words:
+            self.assertRegex(err, r"\Aisorast: error: [^\n]+\nTry: isorast [^\n]*--help\n\Z")
+            self.assertEqual(done.stdout, b"")
+        return done.stdout if binary else done.stdout.decode(), err
+
+
+class Usage(CommandLine):
+    def test_no_arguments_print_the_help(self):
+        out, err = self.isorast(code=2)
+        self.assertEqual(out, "")
+        self.assertIn("Subcommands:", err)
+
+    def test_help(self):
+        self.assertIn("isorast render", self.isorast("--help")[0])
+        for command in ["render", "info", "devices", "compare"]:
+            out, err = self.isorast(command, "--help")
+            self.assertIn("Example", out)
+            self.assertEqual(err, "")
+            self.assertEqual(self.isorast("--help", command)[0], out)
+            self.assertLess(max(map(len, out.splitlines())), 140)
+
+    def test_unknown_command(self):
+        self.assertIn("did you mean render?", self.isorast("rendr", "x.raw", code=2)[1])
+        self.assertIn("info, devices, compare", self.isorast("frobnicate", code=2)[1])
+        self.assertIn("isorast render sphere:64", self.isorast("sphere:64", code=2)[1])
+        for later in ["view", "mesh", "bench"]:
+            self.isorast(later, code=2)
+
+    def test_unknown_option(self):
+        self.assertIn("did you mean --azimuth?", self.isorast("render", "sphere:8", "--azimut", "3", code=2)[1])
+        self.isorast("devices", "--frobnicate", code=2)
+        self.isorast("info", "sphere:8", "sphere:9", code=2)
+
+    def test_wrong_values(self):
+        wrong = {
+            "--size": ["10", "0x10", "10x-3", "10x10x10", "axb", "10x", "", "99999999999x1"],
+            "--iso": ["abc", "1:2", "p101", "1:2:0", "sigma", "1,,2", "nan"],
+            "--technique": ["frobnicate", ""],
+            "--rasterizer": ["cpu"],
+            "--shading": ["goch"],
+            "--culling": ["yes"],
+            "--color": ["#12345", "#ggg", "rde", "#1234567"],
+            "--background": ["nocolor"],
+            "--view": ["x", "front", "+w", "a"],
+            "--azimuth": ["north"],
+            "--zoom": ["0", "-1", "big"],
+            "--fov": ["0", "180"],
+            "--camera-position": ["1,2", "1,2,3,4", "a,b,c", "1,2,nan"],
+            "--dims": ["1x2", "0x1x1", "1x2x3x4", "4294967296x1x1"],
+            "--type": ["u9", "complex"],
+            "--endian": ["middle"],
+            "--spacing": ["1,2", "0,1,1", "-1,1,1"],
+            "--offset": ["-1", "1k"],
+            "--time": ["-1", "1.5", "4294967296"],
+            "--repeat": ["0", "x"],
+            "--output": ["a.jpg", "a.exr"],
+        }
+        for option, values in wrong.items():
+            for value in values:
+                with self.subTest(option=option, value=value):
+                    _, err = self.isorast("render", "sphere:8", f"{option}={value}", code=2)
+                    self.assertIn(option, err)
+
+    def test_options_that_exclude_or_need_each_other(self):
+        for words in [["--view", "+x", "--azimuth", "3"], ["--camera-position", "1,2,3", "--roll", "3"],
+                      ["--camera-target", "1,2,3"], ["--tolerance", "3"], ["-o", "-", "--json"],
+                      ["--color", "red,blue", "--iso", "0.5"]]:
+            self.isorast("render", "sphere:8", *words, code=2)
+
+    def test_missing_values(self):
+        self.assertIn("INPUT", self.isorast("render", code=2)[1])
+        self.isorast("render", "sphere:8", "--iso", code=2)
+        self.isorast("compare", "a.png", code=2)
+
+
+class Compare(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.write("a.png", png(8, 4, [10, 20, 30, 255]))
+        self.write("b.png", png(8, 4, [10, 25, 30, 255]))
+        self.write("c.png", png(4, 8, [10, 20, 30, 255]))
+
+    def test_same_and_different(self):
+        self.assertTrue(self.isorast("compare", "a.png", "a.png")[0].startswith("max 0  rms 0  0 of 32 pixels"))
+        self.assertIn("max 5  rms 2.5  32 of 32", self.isorast("compare", "a.png", "b.png", code=1)[0])
+        self.isorast("compare", "a.png", "b.png", "--tolerance", "4.9", code=1)
+        self.isorast("compare", "a.png", "b.png", "--tolerance", "5")
+        self.isorast("--tolerance", "5", "a.png", "compare", "b.png")  # in any order
+        self.isorast("compare", "a.png", "b.png", "--tolerance", "nan", code=1)
+
+    def test_json(self):
+        found = json.loads(self.isorast("compare", "a.png", "b.png", "--json", code=1)[0])
+        self.assertEqual((found["max"], found["pixels_over"], found["same"]), (5, 32, False))
+
+    def test_difference_picture(self):
+        self.isorast("compare", "a.png", "b.png", "-o", "difference.png", code=1)
+        self.assertEqual(size_of(self.read("difference.png")), (8, 4))
+        self.write("expected.png", png(8, 4, [0, 255, 0, 255]))
+        self.isorast("compare", "difference.png", "expected.png")
+
+    def test_errors(self):
+        self.write("broken.png", self.read("a.png")[:40])
+        self.write("text.png", b"hello")
+        for first, second, message in [("a.png", "c.png", "8x4 and 4x8"), ("a.png", "none.png", "none.png"),
+                                       ("broken.png", "a.png", "broken.png"), ("text.png", "a.png", "text.png"),
+                                       (".", "a.png", ".")]:
+            _, err = self.isorast("compare", first, second, code=1)
+            self.assertRegex(err, r"\Aisorast: error: [^\n]+\n\Z")
+            self.assertIn(message, err)
+
+
+class Info(CommandLine):
+    def test_formula(self):
+        out, err = self.isorast("info", "sphere:32")
+        self.assertEqual(err, "")
+        for text in ["32 x 32 x 32", "f32", "▲", "█", "isorast render sphere:32 --iso"]:
+            self.assertIn(text, out)
+
+    def test_raw_file(self):
+        self.write("ramp.bin", b"skip" + bytes(range(120)))
+        words = ["ramp.bin", "--dims", "6x5x4", "--type", "u8", "--offset", "4", "--spacing", "1,2,0.5"]
+        found = json.loads(self.isorast("info", *words, "--json")[0])
+        self.assertEqual((found["dims"], found["type"], found["spacing"]), ([6, 5, 4], "u8", [1, 2, 0.5]))
+        self.assertEqual((found["minimum"], found["maximum"], found["mean"]), (0, 119, 59.5))
+        self.assertEqual((found["bytes"], found["mapped"], found["not_finite"]), (120, True, 0))
+        self.assertEqual(sum(found["histogram"]), 120)
+        # The line to copy reads the file in the same way.
+        line = self.isorast("info", *words)[0].splitlines()[-1]
+        self.assertTrue(line.startswith(
+            "isorast render ramp.bin --dims 6x5x4 --type u8 --spacing 1,2,0.5 --offset 4 --iso "), line)
+
+    def test_histogram_fits_the_terminal(self):
+        for columns in [30, 47, 80, 120]:
+            os.environ["COLUMNS"] = str(columns)
+            self.addCleanup(os.environ.pop, "COLUMNS", None)
+            lines = self.isorast("info", "gyroid:16")[0].splitlines()
+            axis = next(line for line in lines if line.startswith("─"))
+            self.assertEqual(len(axis), columns)
+            first = lines.index(axis)
+            self.assertTrue(all(len(line) <= columns for line in lines[first - 8:first + 4]))
+
+    def test_odd_volumes(self):
+        def floats(*values):
+            return struct.pack(f"<{len(values)}f", *values)
+        words = ["--dims", "2x2x2", "--type", "f32", "--endian", "little"]
+        self.write("constant.raw", floats(*[7.0] * 8))
+        self.assertIn("none: all voxels are equal", self.isorast("info", "constant.raw", *words)[0])
+        self.write("nan.raw", floats(*[float("nan")] * 8))
+        self.assertIn("none that is finite", self.isorast("info", "nan.raw", *words)[0])
+        json.loads(self.isorast("info", "nan.raw", *words, "--json")[0])
+        self.write("some.raw", floats(1, 2, 3, 4, 5, 6, float("inf"), float("nan")))
+        self.assertIn("2 of 8 voxels", self.isorast("info", "some.raw", *words)[0])
+
+    def test_errors(self):
+        for name in ["none.raw", "sphere:x", "noise:16:octave=3", "."]:
+            _, err = self.isorast("info", name, code=1)
+            self.assertRegex(err, r"\Aisorast: error: [^\n]+\n\Z")
+
+
+    def test_output_that_cannot_be_written(self):
+        with open("/dev/full", "wb") as full:
+            done = subprocess.run([ISORAST, "info", "sphere:8"], stdout=full, stderr=subprocess.PIPE, timeout=60)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(b"standard output", done.stderr)
+
+
+class Devices(CommandLine):
+    def test_json_and_table_agree(self):
+        devices = json.loads(self.isorast("devices", "--json")[0])
+        if not devices:
+            self.skipTest("no Vulkan device")
+        lines = self.isorast("devices")[0].splitlines()
+        self.assertEqual(len(lines), len(devices) + 1)
+        for device, line in zip(devices, lines[1:]):
+            self.assertIn(device["name"], line)
+            self.assertEqual(device["hardware"], device["why_not_hardware"] == "")
+
+
+class Render(CommandLine):
+    @classmethod
+    def setUpClass(cls):
+        done = subprocess.run([ISORAST, "devices", "--json"], capture_output=True, timeout=60)
+        devices = json.loads(done.stdout) if done.returncode == 0 else []
+        if not any(device["compute"] for device in devices):
+            raise unittest.SkipTest("no Vulkan device")
+        hardware = any(device["hardware"] for device in devices)
+        cls.words = SMALL + ["--technique", "direct" if hardware else "raymarch"]
+
+    def render(self, *words, code=0):
+        return self.isorast("render", *self.words, *words, code=code)
+
+    def test_default_output_and_summary(self):
+        out, err = self.render("sphere:16")
+        self.assertEqual(err, "")
+        self.assertRegex(out, r"\Asphere-16\.png  96x64  iso \S+  \w+, \w+ rasterizer  .+  \d+\.\d\d s\n\Z")
+        self.assertEqual(size_of(self.read("sphere-16.png")), (96, 64))
+        self.assertEqual(os.listdir(self.folder.name), ["sphere-16.png"])  # nothing temporary
+
+    def test_order_of_arguments(self):
+        self.render("sphere:16", "--iso", "0.25", "-o", "a.png")
+        self.isorast("--iso", "0.25", *self.words, "-o", "b.png", "sphere:16", "render")
+        self.assertEqual(self.read("a.png"), self.read("b.png"))
+
+    def test_picture_on_standard_output(self):
+        self.render("sphere:16", "-o", "a.png")
+        out, err = self.isorast("render", *self.words, "sphere:16", "-o", "-", binary=True)
+        self.assertEqual(out, self.read("a.png"))
+        self.assertIn("96x64", err)
+
+    def test_json(self):
+        found = json.loads(self.render("torus:24", "--json", "--repeat", "3", "-o", "t.png")[0])
+        self.assertEqual((found["output"], found["size"], found["frames"]), ("t.png", [96, 64], 3))
+        self.assertGreater(len(found["passes"]), 0)
+        self.assertGreater(found["blocks_active"], 0)
+        table = self.render("torus:24", "--stats")[0]
+        for item in found["passes"]:
+            self.assertIn(item["name"], table)
+
+    def test_background(self):
+        self.write("white.png", png(96, 64, [255, 255, 255, 255]))
+        self.write("blue.png", png(96, 64, [0, 0, 0x80, 255]))
+        self.write("clear.png", png(96, 64, [255, 255, 255, 0]))
+        for words, expected in [([], "white"), (["--background", "#000080"], "blue"), (["--transparent"], "clear")]:
+            _, err = self.render("sphere:16", "--iso", "9", *words, "-o", "out.png")
+            self.assertRegex(err, r"\Aisorast: note: sphere:16: no surface at 9: [^\n]+\n\Z")
+            self.isorast("compare", "out.png", f"{expected}.png")
+
+    def test_pictures_differ_by_view_color_and_isovalue(self):
+        views = [[], ["--azimuth", "75"], ["--view", "-x"], ["--roll", "45"], ["--zoom", "2"], ["--orthographic"],
+                 ["--camera-position", "4,1,2"], ["--color", "red"], ["--shading", "normals"], ["--iso", "0.4"],
+                 ["--iso", "0.4,0.1"], ["--fov", "60"]]
+        pictures = set()
+        for number, words in enumerate(views):
+            self.render("marschner-lobb:24", *words, "-o", f"{number}.png")
+            pictures.add(self.read(f"{number}.png"))
+        self.assertEqual(len(pictures), len(views))
+
+    def test_reference(self):
+        self.render("sphere:16", "-o", "good.png")
+        self.render("sphere:16", "-o", "again.png", "--reference", "good.png")
+        self.assertFalse(os.path.exists(self.path("again.difference.png")))
+        _, err = self.render("sphere:16", "--zoom", "0.5", "-o", "other.png", "--reference", "good.png", code=1)
+        self.assertIn("other.difference.png", err)
+        self.assertEqual(size_of(self.read("other.difference.png")), (96, 64))
+        self.render("sphere:16", "--zoom", "0.5", "--reference", "good.png", "--tolerance", "255")
+        self.render("sphere:16", "--reference", "none.png", code=1)
+
+    def test_notes(self):
+        self.assertIn("1 voxel thin along y", self.render("sphere:16x1x16")[1])
+
+    def test_validation_layer_is_silent(self):
+        _, err = self.isorast("render", *self.words, "gyroid:24", "--validation") if self.has_layer() else ("", "")
+        self.assertEqual(err, "")
+
+    def has_layer(self):
+        done = subprocess.run([ISORAST, "render", *self.words, "sphere:8", "--validation", "-o", "layer.png"],
+                              cwd=self.folder.name, capture_output=True, timeout=300)
+        if done.returncode and b"VK_LAYER_KHRONOS_validation" in done.stderr:
+            self.skipTest("the validation layer is not installed")
+        return True
+
+    def test_errors(self):
+        for words in [["none.raw"], ["sphere:16", "-o", "no/such/folder.png"], ["sphere:16", "--device", "none"],
+                      ["sphere:16", "--view", "A"], ["sphere:16", "--camera-position", "0,0,3", "--camera-up", "0,0,1"]]:
+            _, err = self.render(*words, code=1)
+            self.assertRegex(err, r"isorast: error: [^\n]+\n\Z")
+        self.assertEqual([name for name in os.listdir(self.folder.name) if "tmp" in name], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

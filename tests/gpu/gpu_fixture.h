@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// What every GPU test needs: a device under the validation layer, whose every message is a failure;
+// all lanes (a technique with one of its rasterizers); and frames turned into what reference
+// renderers make.
+#pragma once
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <isorast/error.h>
+#include <isorast/renderer.h>
+
+#include <cstdlib>
+
+#include "reference/agreement.h"
+#include "reference/scenes.h"
+
+struct Lane {
+    std::string name;
+    isorast::RendererOptions options;
+    isorast::Renderer renderer;
+};
+
+class GpuTest : public testing::Test {
+protected:
+    static constexpr isorast::Size SIZE{320, 240};
+
+    // ISORAST_DEVICE in the environment picks the device, as --device does.
+    GpuTest()
+        : gpu({.device = std::getenv("ISORAST_DEVICE") ? std::getenv("ISORAST_DEVICE") : "",
+               .validation = true}) {}
+
+    void TearDown() override {
+        for (const std::string& message : gpu.validation_messages())
+            ADD_FAILURE() << message;
+    }
+
+    // A renderer for each technique and rasterizer that the device has; every technique must have
+    // one.
+    std::vector<Lane> lanes(const isorast::Volume& volume, isorast::RendererOptions options = {}) {
+        std::vector<Lane> result;
+        for (const std::string& technique : isorast::techniques()) {
+            std::string refusals;
+            size_t before = result.size();
+            for (auto rasterizer : {isorast::Rasterizer::hardware, isorast::Rasterizer::compute}) {
+                options.technique = technique;
+                options.rasterizer = rasterizer;
+                try {
+                    result.push_back({fmt::format("{} {}", technique, name_of(rasterizer)), options,
+                                      isorast::Renderer(gpu, volume, options)});
+                } catch (const isorast::Error& error) {
+                    refusals += fmt::format("\n{}", error.what());
+                }
+            }
+            EXPECT_GT(result.size(), before) << technique << " refuses:" << refusals;
+        }
+        return result;
+    }
+
+    // A frame that holds all that a comparison needs: depth, normals, and alpha 0 where nothing is.
+    static isorast::Frame frame(const isorast::Camera& camera, std::vector<double> isovalues) {
+        isorast::Frame frame;
+        frame.isovalues = std::move(isovalues);
+        frame.camera = camera;
+        frame.size = SIZE;
+        frame.shading = isorast::Shading::normals;
+        frame.background = {0, 0, 0, 0};
+        frame.want_depth = true;
+        return frame;
+    }
+
+    // Depth and normals of an image of frame(); colour and depth must agree on what is covered.
+    static reference::Picture picture(const isorast::Image& image) {
+        reference::Picture result{image.size, {}};
+        uint64_t disagreements = 0;
+        for (size_t i = 0; i < image.depth.size(); ++i) {
+            const uint8_t* rgba = &image.rgba[4 * i];
+            bool hit = std::isfinite(image.depth[i]);
+            disagreements += hit ? rgba[3] != 255 : rgba[3] != 0;
+            auto& out = result.hits.emplace_back();
+            if (!hit) continue;
+            out.depth = image.depth[i];
+            out.normal = glm::normalize(glm::dvec3(rgba[0], rgba[1], rgba[2]) / 127.5 - 1.0);
+        }
+        EXPECT_EQ(image.depth.size(), size_t{image.size.width} * image.size.height);
+        EXPECT_EQ(disagreements, 0u) << "pixels where colour and depth disagree";
+        return result;
+    }
+
+    isorast::Gpu gpu;
+};

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// What must not change a picture: culling, the order of frames, bricks, the rasterizer, where a
+// formula is sampled, the type that voxels are stored in; and what techniques must agree on.
+#include <cstring>
+
+#include "gpu/gpu_fixture.h"
+
+namespace {
+
+using namespace isorast;
+using namespace reference;
+
+bool same_bits(const Image& a, const Image& b) {
+    return a.size == b.size && a.rgba == b.rgba && a.depth.size() == b.depth.size() &&
+           std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * sizeof(float)) == 0;
+}
+
+double diagonal(const Volume& volume) {
+    dvec3 low = vector(volume.affine(0, 0, 0));
+    dvec3 high = vector(volume.affine(volume.dims[0] - 1, volume.dims[1] - 1, volume.dims[2] - 1));
+    return glm::length(high - low);
+}
+
+// The same coverage, depths within 1e-6 of the box's diagonal, colours within one step of 255.
+void expect_same(const Image& a, const Image& b, double range, const std::string& what) {
+    uint64_t coverage = 0, over = 0;
+    for (size_t i = 0; i < a.depth.size(); ++i) {
+        bool hit = std::isfinite(a.depth[i]);
+        if (hit != std::isfinite(b.depth[i])) {
+            ++coverage;
+        } else if (hit) {
+            over += std::abs(double(a.depth[i]) - double(b.depth[i])) > 1e-6 * range;
+        }
+    }
+    EXPECT_EQ(coverage, 0u) << what << ": pixels covered in one and not in the other";
+    EXPECT_EQ(over, 0u) << what << ": pixels with another depth";
+    EXPECT_EQ(compare(a, b, 1).pixels_over, 0u) << what << ": pixels with another colour";
+}
+
+const std::vector<std::string> SCENES{"noise:64:octaves=4:type=u8", "gyroid:48x64x40"};
+
+TEST_F(GpuTest, CullingChangesNoBit) {
+    for (const std::string& name : SCENES) {
+        Volume volume = sampled(name);
+        double level = suggest_isovalue(volume, statistics(volume));
+        for (Lane& lane : lanes(volume)) {
+            for (int index = 0; index < view_count(12); ++index) {
+                Frame f = frame(view(volume, index), {level});
+                Image culled = lane.renderer.render(f);
+                f.culling = false;
+                EXPECT_TRUE(same_bits(culled, lane.renderer.render(f)))
+                    << lane.name << ' ' << name << ' ' << index;
+            }
+        }
+    }
+}
+
+TEST_F(GpuTest, AFrameDoesNotDependOnThoseBefore) {
+    Volume volume = sampled(SCENES[0]);
+    for (Lane& lane : lanes(volume)) {
+        Frame f = frame(view(volume, 3), {0.5});
+        Renderer cold(gpu, volume, lane.options);
+        Image expected = cold.render(f);
+        for (int index : {0, 1, 2})
+            lane.renderer.render(frame(view(volume, index), {0.3 + 0.1 * index}));
+        EXPECT_TRUE(same_bits(lane.renderer.render(f), expected)) << lane.name;
+        EXPECT_TRUE(same_bits(lane.renderer.render(f), expected)) << lane.name << ", again";
+    }
+}
+
+TEST_F(GpuTest, BricksLeaveNoSeam) {
+    for (const std::string& name : SCENES) {
+        Volume volume = sampled(name);
+        double level = suggest_isovalue(volume, statistics(volume));
+        auto whole = lanes(volume);
+        auto bricked = lanes(volume, {.max_brick_side = 36});
+        ASSERT_EQ(whole.size(), bricked.size());
+        for (size_t lane = 0; lane < whole.size(); ++lane) {
+            for (int index = 0; index < view_count(6); ++index) {
+                Frame f = frame(view(volume, index), {level});
+                expect_same(whole[lane].renderer.render(f), bricked[lane].renderer.render(f),
+                            diagonal(volume),
+                            fmt::format("{}, {}, view {}", whole[lane].name, name, index));
+            }
+            EXPECT_EQ(whole[lane].renderer.stats().bricks, 1u);
+            EXPECT_GE(bricked[lane].renderer.stats().bricks, 4u);
+        }
+    }
+}
+
+TEST_F(GpuTest, RasterizersOfATechniqueAgree) {
+    Volume volume = sampled(SCENES[1]);
+    auto all = lanes(volume);
+    for (size_t lane = 1; lane < all.size(); ++lane) {
+        if (all[lane].options.technique != all[lane - 1].options.technique) continue;
+        for (int index = 0; index < view_count(6); ++index) {
+            Frame f = frame(view(volume, index), {0});
+            expect_same(all[lane].renderer.render(f), all[lane - 1].renderer.render(f),
+                        diagonal(volume), fmt::format("{}, view {}", all[lane].name, index));
+        }
+    }
+}
+
+TEST_F(GpuTest, TechniquesAgree) {
+    Volume volume = sampled("coral:96");
+    double voxel = voxel_side(volume);
+    auto all = lanes(volume);
+    for (int index = 0; index < view_count(6); ++index) {
+        Frame f = frame(view(volume, index), {0.5});
+        Picture first = picture(all[0].renderer.render(f));
+        for (size_t lane = 1; lane < all.size(); ++lane) {
+            Agreement a = agreement(picture(all[lane].renderer.render(f)), first, 4 * voxel);
+            EXPECT_GE(a.overlap, 0.998) << all[lane].name << ' ' << index;
+            EXPECT_LE(a.depth_rms / voxel, 0.1) << all[lane].name << ' ' << index;
+            EXPECT_LE(a.normal_degrees, 2) << all[lane].name << ' ' << index;
+            EXPECT_EQ(a.holes, 0u) << all[lane].name << ' ' << index;
+        }
+    }
+}
+
+TEST_F(GpuTest, FormulasAreSampledAlikeOnBothSides) {
+    for (std::string kind : {"sphere", "torus", "gyroid", "marschner-lobb", "noise", "coral"}) {
+        for (std::string type : {"u8", "u16", "f32"}) {
+            Volume formula = make_procedural(kind + ":40x33x20:type=" + type);
+            Volume voxels = sampled(formula.name);
+            double step = type == "f32"
+                              ? 1e-6
+                              : formula.slope;  // a value between two steps may round either way
+            auto here = statistics(voxels);
+            auto range = Renderer(gpu, formula, {.technique = "raymarch"}).value_range();
+            EXPECT_NEAR(range[0], here.minimum, 1.01 * step) << formula.name;
+            EXPECT_NEAR(range[1], here.maximum, 1.01 * step) << formula.name;
+            if (type != "f32") continue;
+            double level = parse_isovalues("auto", formula).at(0);
+            Frame f = frame(view(formula, 2), {level});
+            Image a = Renderer(gpu, formula, {.technique = "raymarch"}).render(f);
+            Image b = Renderer(gpu, voxels, {.technique = "raymarch"}).render(f);
+            Agreement agreed = agreement(picture(a), picture(b), voxel_side(voxels));
+            EXPECT_GE(agreed.overlap, 0.9995) << formula.name;
+            EXPECT_LE(agreed.depth_rms / voxel_side(voxels), 1e-3) << formula.name;
+        }
+    }
+}
+
+// The same values in every voxel type, by slope and intercept, make the same picture.
+TEST_F(GpuTest, VoxelTypesAreTheSameField) {
+    std::array<uint32_t, 3> dims{40, 36, 32};
+    auto raw = [](double i, double j, double k) {
+        return std::floor(100 - 7 * std::hypot(i - 19, j - 18, k - 15));  // -128 < raw <= 100
+    };
+    Volume floats = volume_of<float>(dims, VoxelType::f32, raw);
+    std::vector<Volume> volumes;
+    volumes.push_back(volume_of<double>(dims, VoxelType::f64, raw));
+    volumes.push_back(volume_of<int8_t>(dims, VoxelType::i8, [&](double i, double j, double k) {
+        return std::max(-128.0, raw(i, j, k));
+    }));
+    volumes.push_back(volume_of<int16_t>(dims, VoxelType::i16, raw));
+    volumes.push_back(volume_of<int32_t>(
+        dims, VoxelType::i32, [&](double i, double j, double k) { return 1e6 + raw(i, j, k); }));
+    volumes.back().intercept = -1e6;
+    volumes.push_back(volume_of<uint16_t>(
+        dims, VoxelType::u16, [&](double i, double j, double k) { return 300 - raw(i, j, k); }));
+    volumes.back().slope = -1;
+    volumes.back().intercept = 300;
+    volumes.push_back(volume_of<uint32_t>(dims, VoxelType::u32, [&](double i, double j, double k) {
+        return 2 * (400 + raw(i, j, k));
+    }));
+    volumes.back().slope = 0.5;
+    volumes.back().intercept = -400;
+    Frame f = frame(view(floats, 0), {30.5});
+    auto expected = lanes(floats);
+    for (const Volume& volume : volumes) {
+        auto all = lanes(volume);
+        for (size_t lane = 0; lane < all.size(); ++lane)
+            expect_same(all[lane].renderer.render(f), expected[lane].renderer.render(f),
+                        diagonal(floats),
+                        fmt::format("{} {}", all[lane].name, name_of(volume.type)));
+    }
+}
+
+}  // namespace

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// Volumes and isovalues at the edge of what is defined: each has one documented picture.
+#include "gpu/gpu_fixture.h"
+#include "reference/trilinear.h"
+
+namespace {
+
+using namespace isorast;
+using namespace reference;
+
+uint64_t covered(const Image& image) {
+    return uint64_t(std::count_if(image.depth.begin(), image.depth.end(),
+                                  [](float d) { return std::isfinite(d); }));
+}
+
+float ball(double i, double j, double k) {
+    return float(10 - std::hypot(i - 11.5, j - 11.5, k - 11.5));
+}
+constexpr std::array<uint32_t, 3> BALL{24, 24, 24};
+
+TEST_F(GpuTest, AConstantVolumeIsEmpty) {
+    for (auto type : {VoxelType::u8, VoxelType::f32}) {
+        auto seven = [](double, double, double) { return 7; };
+        Volume volume = type == VoxelType::u8 ? volume_of<uint8_t>({20, 20, 20}, type, seven)
+                                              : volume_of<float>({20, 20, 20}, type, seven);
+        for (Lane& lane : lanes(volume))
+            for (double isovalue : {6.0, 7.0, 8.0})
+                EXPECT_EQ(covered(lane.renderer.render(frame(orbit(volume, 30, 20), {isovalue}))),
+                          0u)
+                    << lane.name << ' ' << isovalue;
+    }
+}
+
+TEST_F(GpuTest, AnIsovalueOutsideTheRangeIsEmpty) {
+    Volume floats = volume_of<float>(BALL, VoxelType::f32, ball);
+    Volume bytes = sampled("sphere:24:type=u8");
+    for (const Volume* volume : {&floats, &bytes})
+        for (Lane& lane : lanes(*volume))
+            for (double isovalue : {-1e30, -100.0, 11.0, 1e5, 1e30})
+                EXPECT_EQ(covered(lane.renderer.render(frame(orbit(*volume, 30, 20), {isovalue}))),
+                          0u)
+                    << lane.name << ' ' << isovalue;
+}
+
+// Cells need two voxels along each axis.
+TEST_F(GpuTest, AVolumeOneVoxelThinIsEmptyAndTwoIsNot) {
+    for (uint32_t thin = 0; thin < 3; ++thin) {
+        std::array<uint32_t, 3> dims{24, 24, 24};
+        for (uint32_t side : {1u, 2u}) {
+            dims[thin] = side;
+            Volume volume = volume_of<float>(dims, VoxelType::f32, ball);
+            double middle =
+                ball(thin == 0 ? 0 : 11.5, thin == 1 ? 0 : 11.5, thin == 2 ? 0 : 11.5) - 3;
+            for (Lane& lane : lanes(volume)) {
+                uint64_t pixels =
+                    covered(lane.renderer.render(frame(orbit(volume, 30, 40), {middle})));
+                EXPECT_EQ(pixels > 0, side == 2)
+                    << lane.name << " axis " << thin << " side " << side;
+            }
+        }
+    }
+}
+
+TEST_F(GpuTest, TheSmallestVolumes) {
+    for (std::array<uint32_t, 3> dims : {std::array<uint32_t, 3>{1, 1, 1}, {2, 1, 1}, {2, 2, 2}}) {
+        Volume volume = volume_of<uint8_t>(dims, VoxelType::u8,
+                                           [](double i, double, double) { return 200 * i; });
+        for (Lane& lane : lanes(volume)) {
+            uint64_t pixels = covered(lane.renderer.render(frame(orbit(volume, 60, 20), {100})));
+            EXPECT_EQ(pixels > 0, dims[2] == 2)
+                << lane.name << ' ' << dims[0] << dims[1] << dims[2];
+        }
+    }
+}
+
+// Outside, whatever the isovalue: so a hole in a ball, of which the rest stays as it was.
+TEST_F(GpuTest, VoxelsThatAreNotFiniteAreOutside) {
+    for (float bad : {std::nanf(""), float(INFINITE), -float(INFINITE)}) {
+        Volume volume = volume_of<float>(BALL, VoxelType::f32, [&](double i, double j, double k) {
+            return i > 9 && i < 14 && j > 9 && j < 14 ? bad : ball(i, j, k);
+        });
+        Volume whole = volume_of<float>(BALL, VoxelType::f32, ball);
+        Volume outside = volume_of<float>(BALL, VoxelType::f32, [&](double i, double j, double k) {
+            return i > 9 && i < 14 && j > 9 && j < 14 ? -1e30f : ball(i, j, k);
+        });
+        Frame along = frame(orbit(volume, 0, 90), {2}), aside = frame(orbit(volume, 40, 10), {2});
+        Picture truth = TrilinearCaster(whole, {2}).render(aside.camera, SIZE);
+        auto all = lanes(volume), low = lanes(outside);
+        for (size_t lane = 0; lane < all.size(); ++lane) {
+            Image image = all[lane].renderer.render(along);
+            EXPECT_FALSE(std::isfinite(image.depth[SIZE.height / 2 * SIZE.width + SIZE.width / 2]))
+                << all[lane].name << ' ' << bad;
+            Agreement a = agreement(picture(all[lane].renderer.render(aside)), truth, 4);
+            EXPECT_GE(a.overlap, 0.99) << all[lane].name << ' ' << bad;
+            // As if they held a very low value.
+            Agreement b = agreement(picture(image), picture(low[lane].renderer.render(along)), 4);
+            EXPECT_GE(b.overlap, 0.999) << all[lane].name << ' ' << bad;
+            EXPECT_LE(b.depth_rms, 0.1) << all[lane].name << ' ' << bad;
+            auto range = all[lane].renderer.value_range();
+            EXPECT_TRUE(std::isfinite(range[0]) && std::isfinite(range[1])) << all[lane].name;
+        }
+    }
+}
+
+TEST_F(GpuTest, NoFiniteVoxelAtAllIsEmpty) {
+    Volume volume = volume_of<float>({12, 12, 12}, VoxelType::f32,
+                                     [](double, double, double) { return std::nanf(""); });
+    for (Lane& lane : lanes(volume))
+        EXPECT_EQ(covered(lane.renderer.render(frame(orbit(volume, 30, 20), {0}))), 0u)
+            << lane.name;
+}
+
+// Each pixel shows the nearest surface, in that surface's colour.
+TEST_F(GpuTest, SeveralIsovalues) {
+    Volume volume = sampled("gyroid:48");
+    const std::vector<double> isovalues{0.6, -0.9, 0};
+    const std::vector<Color> colors{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
+    double voxel = voxel_side(volume);
+    TrilinearCaster voxels(volume, isovalues);
+    for (Lane& lane : lanes(volume)) {
+        for (int index : {0, 1, 2}) {
+            std::string what = fmt::format("{}, view {}", lane.name, index);
+            Frame f = frame(view(volume, index), isovalues);
+            Agreement a = agreement(picture(lane.renderer.render(f)), voxels.render(f.camera, SIZE),
+                                    4 * voxel);
+            EXPECT_GE(a.overlap, 0.999) << what;
+            EXPECT_LE(a.depth_rms / voxel, 0.1) << what;
+            EXPECT_EQ(a.holes, 0u) << what;
+
+            f.shading = Shading::gooch;
+            f.colors = colors;
+            Image together = lane.renderer.render(f);
+            std::vector<Image> alone;
+            for (size_t surface = 0; surface < isovalues.size(); ++surface) {
+                Frame one = f;
+                one.isovalues = {isovalues[surface]};
+                one.colors = {colors[surface]};
+                alone.push_back(lane.renderer.render(one));
+            }
+            uint64_t compared = 0, wrong = 0;
+            for (size_t i = 0; i < together.depth.size(); ++i) {
+                auto nearest = std::min_element(
+                    alone.begin(), alone.end(),
+                    [&](const Image& x, const Image& y) { return x.depth[i] < y.depth[i]; });
+                if (!std::isfinite(nearest->depth[i])) continue;
+                ++compared;
+                bool same = std::abs(together.depth[i] - nearest->depth[i]) < 0.01 * voxel;
+                for (size_t c = 0; c < 4; ++c)
+                    same =
+                        same && std::abs(together.rgba[4 * i + c] - nearest->rgba[4 * i + c]) <= 2;
+                wrong += !same;
+            }
+            EXPECT_GT(compared, 20000u) << what;
+            EXPECT_LE(wrong, compared / 1000) << what;
+        }
+    }
+}
+
+// The core, 100 everywhere, is inside at the isovalue 100: no ray may pass through the random shell
+// around it.
+TEST_F(GpuTest, RandomVoxelsAtTheIsovalueAreWatertight) {
+    for (uint32_t seed : {1u, 2u}) {
+        Volume blob = random_blob(48, seed), core = solid_core(48);
+        TrilinearCaster voxels(core, {100});
+        auto all = lanes(blob);
+        for (int index = 0; index < view_count(10); ++index) {
+            Camera camera = view(blob, index);
+            Picture truth = voxels.render(camera, SIZE);
+            for (Lane& lane : all) {
+                Agreement a =
+                    agreement(picture(lane.renderer.render(frame(camera, {100}))), truth, 4);
+                EXPECT_EQ(a.holes, 0u) << lane.name << ' ' << index;
+                EXPECT_GT(a.covered, 1000u);
+            }
+        }
+    }
+}
+
+}  // namespace

@@ -1,0 +1,18 @@
+# A program that reads volume files with ITK, for the reader tests to compare with; they are skipped without it.
+# ITK's own package configuration wants a C compiler, HDF5, GDCM and more: look for the few parts used.
+foreach(version 5.4 5.3 5.2)
+    find_path(ITK_INCLUDE itkNrrdImageIO.h PATH_SUFFIXES ITK-${version})
+    foreach(part Common IOImageBase IONRRD IOMeta IONIFTI)
+        find_library(ITK_${part} ITK${part}-${version})
+        list(APPEND itk_${version} ${ITK_${part}})
+    endforeach()
+    if(ITK_INCLUDE AND NOT itk_${version} MATCHES NOTFOUND AND NOT TARGET isorast_itk_dump)
+        add_executable(isorast_itk_dump ${CMAKE_CURRENT_LIST_DIR}/itk_dump.cpp)
+        target_include_directories(isorast_itk_dump SYSTEM PRIVATE ${ITK_INCLUDE})
+        target_link_libraries(isorast_itk_dump PRIVATE ${itk_${version}})
+    endif()
+endforeach()
+if(TARGET isorast_itk_dump AND TARGET isorast_test_readers)
+    add_dependencies(isorast_test_readers isorast_itk_dump)
+    target_compile_definitions(isorast_test_readers PRIVATE ISORAST_ITK_DUMP="$<TARGET_FILE:isorast_itk_dump>")
+endif()
