@@ -1,4 +1,4 @@
-# What reads the sources instead of running them: rules, format, clang-tidy, and spirv-val of every shader.
+# What reads the sources instead of running them: format, clang-tidy, and spirv-val of every shader.
 find_program(CLANG_FORMAT clang-format-19)
 find_program(RUN_CLANG_TIDY run-clang-tidy-19)
 find_program(SPIRV_VAL spirv-val)
@@ -14,12 +14,6 @@ if(RUN_CLANG_TIDY)
     add_test(NAME clang_tidy WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
         COMMAND ${RUN_CLANG_TIDY} -quiet -p ${CMAKE_BINARY_DIR} -j 2 "${CMAKE_SOURCE_DIR}/(src|apps|bench|examples)/")
     set_tests_properties(clang_tidy PROPERTIES LABELS full TIMEOUT 900 PROCESSORS 2)
-endif()
-
-if(PYTHON)
-    add_test(NAME architecture
-        COMMAND ${PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/lint/architecture.py ${CMAKE_SOURCE_DIR})
-    set_tests_properties(architecture PROPERTIES LABELS quick)
 endif()
 
 if(SPIRV_VAL AND PYTHON)

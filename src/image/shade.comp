@@ -29,39 +29,43 @@ vec2 span_in_cell(Ray ray, ivec3 cell) {
     return vec2(max(max(enter.x, enter.y), enter.z), min(min(leave.x, leave.y), leave.z));
 }
 
-bool crossing_in_cell(Ray ray, ivec3 cell, vec2 span, float t, float iso, out float crossing) {
+// A point on the surface: where along the ray, and whether the ray enters there (values rise).
+struct Hit {
+    float t;
+    bool entering, refined;
+};
+
+Hit crossing_in_cell(Ray ray, ivec3 cell, float t, float iso) {
+    const vec2 span = span_in_cell(ray, cell);
+    Hit hit = Hit(t, true, false);
+    if (!(span.x < span.y)) return hit;
     float corners[8];
     load_cell(cell, corners);
     const vec3 from = ray.origin + span.x * ray.direction - vec3(cell);
     const vec3 to = ray.origin + span.y * ray.direction - vec3(cell);
+    const CellLine line = cell_line(corners, from, to, iso);
     float s;
-    if (!nearest_crossing(cell_line(corners, from, to, iso), (t - span.x) / (span.y - span.x), s))
-        return false;
-    crossing = mix(span.x, span.y, s);
-    return true;
+    if (!nearest_crossing(line, (t - span.x) / (span.y - span.x), s)) return hit;
+    return Hit(mix(span.x, span.y, s), slope_at(line.cubic, s) > 0.0, true);
 }
 
 // The trilinear surface nearest to t along the ray, in the cell there or else in the cells before and
 // after it; t itself where the ray misses the trilinear surface (at silhouettes).
-float refine_hit(Ray ray, float t, float iso) {
+Hit refine_hit(Ray ray, float t, float iso) {
     const ivec3 cell = cell_of(ray.origin + t * ray.direction);
-    const vec2 span = span_in_cell(ray, cell);
-    if (!(span.x < span.y)) return t;
-    float best;
-    if (crossing_in_cell(ray, cell, span, t, iso, best)) return best;
+    Hit best = crossing_in_cell(ray, cell, t, iso);
+    if (best.refined) return best;
     const float voxel_step = 1.0 / length(ray.direction);  // one voxel, as a difference of t
-    best = t;
+    const vec2 span = span_in_cell(ray, cell);
     float nearest = voxel_step;
     for (int side = 0; side < 2; ++side) {
         const float beyond = side == 0 ? span.x - 0.01 * voxel_step : span.y + 0.01 * voxel_step;
         const ivec3 neighbour = cell_of(ray.origin + beyond * ray.direction);
-        const vec2 there = span_in_cell(ray, neighbour);
-        float crossing;
-        if (neighbour == cell || !(there.x < there.y)) continue;
-        if (crossing_in_cell(ray, neighbour, there, t, iso, crossing) && abs(crossing - t) < nearest) {
-            best = crossing;
-            nearest = abs(crossing - t);
-        }
+        if (neighbour == cell) continue;
+        const Hit hit = crossing_in_cell(ray, neighbour, t, iso);
+        if (!hit.refined || abs(hit.t - t) >= nearest) continue;
+        best = hit;
+        nearest = abs(hit.t - t);
     }
     return best;
 }
@@ -74,14 +78,16 @@ vec3 block_color(ivec3 block) {
     return 0.3 + 0.6 * vec3(h & 255u, h >> 8 & 255u, h >> 16 & 255u) / 255.0;
 }
 
-vec4 shade(Ray ray, float t, vec3 surface_color) {
-    const vec3 p = ray.origin + t * ray.direction;
+vec4 shade(Ray ray, Hit hit, vec3 surface_color) {
+    const vec3 p = ray.origin + hit.t * ray.direction;
     const vec3 direction = world_direction(ray.direction);
     if (frame.size.w == DEPTH) {
         const float near = frame.depth_range.x, far = frame.depth_range.y;
-        return vec4(vec3(mix(0.95, 0.05, clamp((t - near) / (far - near), 0.0, 1.0))), 1.0);
+        return vec4(vec3(mix(0.95, 0.05, clamp((hit.t - near) / (far - near), 0.0, 1.0))), 1.0);
     }
-    const vec3 normal = world_normal(field_gradient(p), ray.direction);
+    const vec3 gradient = field_gradient(p);
+    const bool outward = hit.refined ? hit.entering : dot(gradient, ray.direction) > 0.0;
+    const vec3 normal = world_normal(gradient, ray.direction, outward);
     if (frame.size.w == NORMALS) return vec4(0.5 + 0.5 * normal, 1.0);
     if (frame.size.w == BLOCKS)
         return vec4(phong(block_color(cell_of(p) / int(BLOCK)), normal, direction), 1.0);
@@ -100,8 +106,9 @@ void main() {
         t = view_depth(z);
         if (WRITE_COLOR) {
             const uint number = frame.size.z > 1 ? texelFetch(surface_numbers, pixel, 0).r : 0;
-            t = refine_hit(ray, t, frame.surfaces[number].w);
-            result = shade(ray, t, frame.surfaces[number].rgb);
+            const Hit hit = refine_hit(ray, t, frame.surfaces[number].w);
+            t = hit.t;
+            result = shade(ray, hit, frame.surfaces[number].rgb);
         }
     }
     if (WRITE_COLOR) imageStore(color, pixel, result);

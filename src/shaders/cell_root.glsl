@@ -8,6 +8,8 @@ struct CellLine {
 
 float cubic_at(vec4 c, float s) { return c.x + s * (c.y + s * (c.z + s * c.w)); }
 
+float slope_at(vec4 c, float s) { return c.y + s * (2.0 * c.z + s * 3.0 * c.w); }
+
 // `from` and `to` are within the cell, 0 to 1 along each axis (or a rounding error beyond).
 CellLine cell_line(float corners[8], vec3 from, vec3 to, float iso) {
     const float a = trilinear(corners, from) - iso, b = trilinear(corners, mix(from, to, 1.0 / 3.0)) - iso;

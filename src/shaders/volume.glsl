@@ -89,13 +89,17 @@ vec3 field_gradient(vec3 p) {
     return gradient;
 }
 
-// The unit normal in the world that faces against `direction` (voxel space), from a gradient in voxel space.
-vec3 world_normal(vec3 gradient, vec3 direction) {
-    const vec3 n = vec3(dot(frame.normal_x.xyz, gradient), dot(frame.normal_y.xyz, gradient),
-                        dot(frame.normal_z.xyz, gradient));
-    const vec3 towards = -vec3(dot(frame.world_x.xyz, direction), dot(frame.world_y.xyz, direction),
-                               dot(frame.world_z.xyz, direction));
+// The unit normal in the world on the viewer's side of the surface. `outward` says that the viewer is where
+// values are below the isovalue; interpolated gradients can still point a little away from the eye near
+// silhouettes, and are turned back just so far that they do not.
+vec3 world_normal(vec3 gradient, vec3 direction, bool outward) {
+    const vec3 g = outward ? -gradient : gradient;
+    const vec3 n = vec3(dot(frame.normal_x.xyz, g), dot(frame.normal_y.xyz, g), dot(frame.normal_z.xyz, g));
+    const vec3 towards = -normalize(vec3(dot(frame.world_x.xyz, direction), dot(frame.world_y.xyz, direction),
+                                         dot(frame.world_z.xyz, direction)));
     const float length_squared = dot(n, n);
-    if (!(length_squared > 0.0)) return normalize(towards);
-    return n * inversesqrt(length_squared) * (dot(n, towards) < 0.0 ? -1.0 : 1.0);
+    if (!(length_squared > 0.0)) return towards;
+    const vec3 unit = n * inversesqrt(length_squared);
+    const float facing = dot(unit, towards);
+    return facing >= 0.0 ? unit : normalize(unit - (facing - 1e-3) * towards);
 }

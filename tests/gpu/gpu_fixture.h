@@ -9,6 +9,7 @@
 #include <isorast/renderer.h>
 
 #include <cstdlib>
+#include <set>
 
 #include "reference/agreement.h"
 #include "reference/scenes.h"
@@ -29,7 +30,8 @@ protected:
                .validation = true}) {}
 
     void TearDown() override {
-        for (const std::string& message : gpu.validation_messages())
+        auto messages = gpu.validation_messages();
+        for (const auto& message : std::set<std::string>(messages.begin(), messages.end()))
             ADD_FAILURE() << message;
     }
 

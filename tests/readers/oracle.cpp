@@ -169,4 +169,19 @@ std::map<std::string, Dump> nibabel_dumps(const std::vector<std::string>& paths)
     return dumps;
 }
 
+void expect_like_nibabel(const std::string& path, const Dump& dump) {
+    const Volume volume = load_volume(path);
+    expect_same_voxels(volume, path, dump);
+    EXPECT_EQ(volume.slope, std::stod(dump.at("slope")[0])) << path;
+    EXPECT_EQ(volume.intercept, std::stod(dump.at("slope")[1])) << path;
+    if (dump.at("codes")[0] == "0" && dump.at("codes")[1] == "0") return;
+    EXPECT_EQ(volume.space, Space::ras) << path;
+    for (size_t entry = 0; entry < 12; ++entry) {
+        const double expected = std::stod(dump.at("affine")[entry]);
+        EXPECT_NEAR(volume.affine.m[entry / 4][entry % 4], expected,
+                    1e-5 * std::max(1.0, std::abs(expected)))
+            << path << ": affine entry " << entry;
+    }
+}
+
 }  // namespace isorast::test

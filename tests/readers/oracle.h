@@ -23,6 +23,10 @@ void expect_like_itk(const std::string& path);
 // What nibabel reads from each file, by path; empty where it is not installed.
 std::map<std::string, Dump> nibabel_dumps(const std::vector<std::string>& paths);
 
+// Compares everything that nibabel says with what we load. It invents an affine where the file
+// gives none: affines are compared only where qform or sform is set.
+void expect_like_nibabel(const std::string& path, const Dump& dump);
+
 // Dimensions, type and every voxel of all time steps; `volume` is the first step.
 void expect_same_voxels(const Volume& volume, const std::string& path, const Dump& dump);
 

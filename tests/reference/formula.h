@@ -84,14 +84,13 @@ private:
             double middle = 0.5 * (low + high);
             ((above_level(ray.at(middle)) >= 0) == inside ? low : high) = middle;
         }
-        dvec3 normal;
+        dvec3 gradient;
         for (int axis = 0; axis < 3; ++axis) {
             dvec3 step(0);
             step[axis] = 1e-5 * half_side_;
-            normal[axis] = above_level(ray.at(high) + step) - above_level(ray.at(high) - step);
+            gradient[axis] = above_level(ray.at(high) + step) - above_level(ray.at(high) - step);
         }
-        normal = glm::normalize(normal);
-        return {high, glm::dot(normal, ray.direction) > 0 ? -normal : normal};
+        return hit_with_gradient(high, gradient, ray);
     }
 
     Formula formula_;

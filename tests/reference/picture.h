@@ -30,7 +30,17 @@ struct Ray {
 struct Hit {
     double depth = INFINITE;
     dvec3 normal{0, 0, 0};  // world space, unit length, facing the eye
+    double facing = 1;      // cosine of the angle between the normal and the way to the eye
 };
+
+// A hit whose normal is along the gradient; where the gradient vanishes the surface faces the eye.
+inline Hit hit_with_gradient(double depth, const dvec3& gradient, const Ray& ray) {
+    dvec3 towards = -glm::normalize(ray.direction);
+    double length = glm::length(gradient);
+    dvec3 normal = length > 0 ? gradient / length : towards;
+    double facing = glm::dot(normal, towards);
+    return {depth, facing < 0 ? -normal : normal, std::abs(facing)};
+}
 
 struct Picture {
     isorast::Size size;

@@ -111,8 +111,7 @@ public:
         for (size_t surface = 0; surface < isovalues_.size(); ++surface)
             depth = std::min(depth, first_hit(ray, *range, surface));
         if (depth == INFINITE) return std::nullopt;
-        dvec3 normal = glm::normalize(glm::transpose(inverse_) * gradient(ray.at(depth)));
-        return Hit{depth, glm::dot(normal, world.direction) > 0 ? -normal : normal};
+        return hit_with_gradient(depth, glm::transpose(inverse_) * gradient(ray.at(depth)), world);
     }
 
     Picture render(const isorast::Camera& camera, isorast::Size size) const {

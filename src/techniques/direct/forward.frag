@@ -15,6 +15,7 @@ void main() {
     const vec2 ndc = 2.0 * gl_FragCoord.xy / vec2(frame.size.xy) - 1.0;
     const vec3 direction = frame.ray_direction.xyz + ndc.x * frame.ray_direction_x.xyz +
                            ndc.y * frame.ray_direction_y.xyz;
-    color = vec4(gooch(frame.surfaces[surface].rgb, world_normal(gradient, direction),
+    const bool outward = dot(gradient, direction) > 0.0;
+    color = vec4(gooch(frame.surfaces[surface].rgb, world_normal(gradient, direction, outward),
                        world_direction(direction)), 1.0);
 }
