@@ -219,8 +219,9 @@ struct Render : Command {
         note_what_is_special(volume);
 
         Gpu gpu(gpu_options);
-        if (const std::string unfit = what_does_not_fit(gpu, volume, options); !unfit.empty())
-            note(unfit);
+        if (const std::string unfit = what_does_not_fit(gpu, volume, options); !unfit.empty()) {
+            throw Error(unfit);
+        }
         Renderer renderer(gpu, volume, options);
         note_isovalues_outside(volume.name, renderer.value_range());
 

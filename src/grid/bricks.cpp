@@ -11,9 +11,6 @@ namespace isorast {
 
 namespace {
 
-const glm::uvec3 GROUP_CELLS =
-    shared::BLOCK * glm::uvec3(shared::GROUP_X, shared::GROUP_Y, shared::GROUP_Z);
-
 glm::uvec3 divide_up(glm::uvec3 a, glm::uvec3 b) { return (a + b - 1u) / b; }
 
 uint64_t product(glm::uvec3 v) { return uint64_t{v.x} * v.y * v.z; }
@@ -36,17 +33,18 @@ BrickPlan plan_bricks(glm::uvec3 voxels, uint32_t voxel_bytes, uint32_t max_side
         product(voxels) * voxel_bytes <= max_bytes)
         return {voxels, glm::max(voxels, 2u) - 1u, glm::uvec3(1)};
     const uint32_t apron = 3;  // a voxel below, the far face, a voxel above
-    const uint32_t least = glm::max(GROUP_CELLS.x, GROUP_CELLS.z) + apron;
+    const uint32_t least = shared::BLOCK + apron;
     if (max_side < least)
         throw Error(fmt::format("bricks: expected a side of at least {} voxels, found {}", least, max_side));
 
     const glm::uvec3 cells = glm::max(voxels, 2u) - 1u;
-    const glm::uvec3 longest = (max_side - apron) / GROUP_CELLS * GROUP_CELLS;
+    const glm::uvec3 longest = glm::uvec3((max_side - apron) / shared::BLOCK * shared::BLOCK);
     glm::uvec3 count = divide_up(cells, longest);
     for (;;) {
-        // Bricks of equal size along each axis, in whole groups.
-        const glm::uvec3 brick = divide_up(divide_up(cells, count), GROUP_CELLS) * GROUP_CELLS;
-        if (product(brick + apron) * voxel_bytes <= max_bytes || brick == GROUP_CELLS)
+        // Bricks of equal size along each axis, in whole blocks.
+        const glm::uvec3 block(shared::BLOCK);
+        const glm::uvec3 brick = divide_up(divide_up(cells, count), block) * block;
+        if (product(brick + apron) * voxel_bytes <= max_bytes || brick == block)
             return {voxels, brick, divide_up(cells, brick)};
         // Cut the longest side once more.
         int axis = 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a volume is cut into 3D images: bricks of whole groups of blocks, with an apron of one voxel.
+// How a volume is cut into 3D images: bricks of whole blocks, with an apron of one voxel.
 #pragma once
 #include <glm/glm.hpp>
 
@@ -9,7 +9,7 @@ namespace isorast {
 
 struct BrickPlan {
     glm::uvec3 voxels{1};       // of the volume
-    glm::uvec3 brick_cells{1};  // a multiple of a group's cells, unless there is one brick only
+    glm::uvec3 brick_cells{1};  // whole blocks, unless there is one brick only
     glm::uvec3 bricks{1};
 
     bool one() const { return bricks == glm::uvec3(1); }
@@ -23,7 +23,7 @@ struct BrickPlan {
 };
 
 // The fewest bricks whose sides are at most `max_side` voxels and whose bytes are at most `max_bytes`.
-// Throws Error when max_side is less than a group and its apron needs (35).
+// Throws Error when max_side is less than a block and its apron need (11).
 BrickPlan plan_bricks(glm::uvec3 voxels, uint32_t voxel_bytes, uint32_t max_side, uint64_t max_bytes);
 
 }  // namespace isorast

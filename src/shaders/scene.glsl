@@ -1,6 +1,6 @@
 // Descriptor set 0: the frame, the grid, its voxels, its min-max pyramid. Include first.
 // Define SCENE_WRITES_MINMAX before including to write the pyramid.
-#extension GL_EXT_nonuniform_qualifier : require
+#extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_EXT_shader_16bit_storage : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "shaders/shared.h"

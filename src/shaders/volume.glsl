@@ -23,10 +23,38 @@ float stored_value(float texel) {
     return texel;
 }
 
+// Textures are indexed with one brick at a time: every round serves the threads of the subgroup that want the
+// first waiting thread's brick. That is one round nearly always, and needs no non-uniform indexing.
+float fetch_texel(uint brick, ivec3 texel) {
+    if (!BRICKED) return texelFetch(bricks[0], texel, 0).r;
+    float value = 0.0;
+    for (bool waiting = true; waiting;) {
+        const uint turn = subgroupBroadcastFirst(brick);
+        if (turn == brick) {
+            value = texelFetch(bricks[turn], texel, 0).r;
+            waiting = false;
+        }
+    }
+    return value;
+}
+
+float filter_texels(uint brick, vec3 texel) {
+    if (!BRICKED)
+        return textureLod(sampler3D(bricks[0], linear_sampler), texel / vec3(grid.voxels.xyz), 0.0).r;
+    float value = 0.0;
+    for (bool waiting = true; waiting;) {
+        const uint turn = subgroupBroadcastFirst(brick);
+        if (turn == brick) {
+            const vec3 size = vec3(textureSize(sampler3D(bricks[turn], linear_sampler), 0));
+            value = textureLod(sampler3D(bricks[turn], linear_sampler), texel / size, 0.0).r;
+            waiting = false;
+        }
+    }
+    return value;
+}
+
 float voxel(Brick brick, ivec3 position) {
-    const ivec3 texel = position - brick.origin;
-    return stored_value(BRICKED ? texelFetch(bricks[nonuniformEXT(brick.index)], texel, 0).r
-                                : texelFetch(bricks[0], texel, 0).r);
+    return stored_value(fetch_texel(brick.index, position - brick.origin));
 }
 
 ivec3 clamp_to_volume(ivec3 position) { return clamp(position, ivec3(0), ivec3(grid.voxels.xyz) - 1); }
@@ -49,14 +77,16 @@ float trilinear(float corners[8], vec3 f) {
 
 // Through the sampler: fast, with weights of 8 bits. p within the volume.
 float sample_filtered(Brick brick, vec3 p) {
-    const vec3 texel = p - vec3(brick.origin) + 0.5;
     const float scale = VOXEL_BITS == 8 ? 255.0 : VOXEL_BITS == 16 ? 65535.0 : 1.0;
-    if (BRICKED) {
-        const vec3 size = vec3(textureSize(sampler3D(bricks[nonuniformEXT(brick.index)], linear_sampler), 0));
-        return scale * textureLod(sampler3D(bricks[nonuniformEXT(brick.index)], linear_sampler),
-                                  texel / size, 0.0).r;
-    }
-    return scale * textureLod(sampler3D(bricks[0], linear_sampler), texel / vec3(grid.voxels.xyz), 0.0).r;
+    return scale * filter_texels(brick.index, p - vec3(brick.origin) + 0.5);
+}
+
+// The same by fetches.
+float sample_exactly(Brick brick, vec3 p) {
+    const ivec3 cell = cell_of(p);
+    float corners[8];
+    for (int c = 0; c < 8; ++c) corners[c] = voxel(brick, cell + ivec3(c & 1, c >> 1 & 1, c >> 2));
+    return trilinear(corners, p - vec3(cell));
 }
 
 // The gradient in voxel space at a voxel: central differences, one-sided at the volume's border.

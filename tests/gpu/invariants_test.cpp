@@ -142,39 +142,42 @@ TEST_F(GpuTest, FormulasAreSampledAlikeOnBothSides) {
     }
 }
 
-// The same values in every voxel type, by slope and intercept, make the same picture.
+// The same values in every voxel type, by slope and intercept, make the same picture, but for what
+// a wide offset costs: 16-bit values near 32768 keep 8 bits behind the point.
 TEST_F(GpuTest, VoxelTypesAreTheSameField) {
     std::array<uint32_t, 3> dims{40, 36, 32};
-    auto raw = [](double i, double j, double k) {
-        return std::floor(100 - 7 * std::hypot(i - 19, j - 18, k - 15));  // -128 < raw <= 100
+    auto of_type = [&]<typename Voxel>(VoxelType type, Voxel, double slope, double intercept) {
+        Volume volume = volume_of<Voxel>(dims, type, [&](double i, double j, double k) {
+            double value = std::floor(100 - 5 * std::hypot(i - 19, j - 18, k - 15));  // -56 to 100
+            return (value - intercept) / slope;
+        });
+        volume.slope = slope;
+        volume.intercept = intercept;
+        return volume;
     };
-    Volume floats = volume_of<float>(dims, VoxelType::f32, raw);
+    Volume floats = of_type(VoxelType::f32, float{}, 1, 0);
     std::vector<Volume> volumes;
-    volumes.push_back(volume_of<double>(dims, VoxelType::f64, raw));
-    volumes.push_back(volume_of<int8_t>(dims, VoxelType::i8, [&](double i, double j, double k) {
-        return std::max(-128.0, raw(i, j, k));
-    }));
-    volumes.push_back(volume_of<int16_t>(dims, VoxelType::i16, raw));
-    volumes.push_back(volume_of<int32_t>(
-        dims, VoxelType::i32, [&](double i, double j, double k) { return 1e6 + raw(i, j, k); }));
-    volumes.back().intercept = -1e6;
-    volumes.push_back(volume_of<uint16_t>(
-        dims, VoxelType::u16, [&](double i, double j, double k) { return 300 - raw(i, j, k); }));
-    volumes.back().slope = -1;
-    volumes.back().intercept = 300;
-    volumes.push_back(volume_of<uint32_t>(dims, VoxelType::u32, [&](double i, double j, double k) {
-        return 2 * (400 + raw(i, j, k));
-    }));
-    volumes.back().slope = 0.5;
-    volumes.back().intercept = -400;
+    volumes.push_back(of_type(VoxelType::f64, double{}, 1, 0));
+    volumes.push_back(of_type(VoxelType::i8, int8_t{}, 1, 0));
+    volumes.push_back(of_type(VoxelType::i8, int8_t{}, -1, 10));
+    volumes.push_back(of_type(VoxelType::u8, uint8_t{}, -1, 110));
+    volumes.push_back(of_type(VoxelType::i16, int16_t{}, 0.25, 50));
+    volumes.push_back(of_type(VoxelType::u16, uint16_t{}, -0.5, 300));
+    volumes.push_back(of_type(VoxelType::i32, int32_t{}, 1, -1e6));
+    volumes.push_back(of_type(VoxelType::u32, uint32_t{}, 0.5, -400));
     Frame f = frame(view(floats, 0), {30.5});
     auto expected = lanes(floats);
     for (const Volume& volume : volumes) {
         auto all = lanes(volume);
-        for (size_t lane = 0; lane < all.size(); ++lane)
-            expect_same(all[lane].renderer.render(f), expected[lane].renderer.render(f),
-                        diagonal(floats),
-                        fmt::format("{} {}", all[lane].name, name_of(volume.type)));
+        for (size_t lane = 0; lane < all.size(); ++lane) {
+            Agreement a = agreement(picture(all[lane].renderer.render(f)),
+                                    picture(expected[lane].renderer.render(f)), 4);
+            std::string what = fmt::format("{} {}", all[lane].name, name_of(volume.type));
+            EXPECT_GE(a.overlap, 0.9998) << what;
+            EXPECT_LE(a.depth_rms, 1e-3) << what;
+            EXPECT_LE(a.normal_degrees, 0.2) << what;
+            EXPECT_EQ(a.holes, 0u) << what;
+        }
     }
 }
 

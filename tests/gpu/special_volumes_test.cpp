@@ -112,7 +112,7 @@ TEST_F(GpuTest, NoFiniteVoxelAtAllIsEmpty) {
 
 // Each pixel shows the nearest surface, in that surface's colour.
 TEST_F(GpuTest, SeveralIsovalues) {
-    Volume volume = sampled("gyroid:48");
+    Volume volume = sampled("gyroid:64");
     const std::vector<double> isovalues{0.6, -0.9, 0};
     const std::vector<Color> colors{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
     double voxel = voxel_side(volume);

@@ -59,21 +59,24 @@ TEST_P(Truth, FromManySides) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, Truth,
-    testing::Values(Scene{"sphere:64", 0.25, true}, Scene{"torus:64", 0, true},
-                    Scene{"gyroid:64", 0, true}, Scene{"marschner-lobb:128", 0.5, false},
-                    Scene{"sphere:64x64x32:spacing=1,1,2", 0.25, true},
-                    Scene{"gyroid:64x40x64:spacing=1,1.6,1", 0, true}),
-    [](const auto& scene) {
-        std::string name = scene.param.name;
-        std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
-        return name;
-    });
+INSTANTIATE_TEST_SUITE_P(Scenes, Truth,
+                         testing::Values(Scene{"sphere:64", 0.25, true}, Scene{"torus:64", 0, true},
+                                         Scene{"gyroid:64", 0, true},
+                                         Scene{"marschner-lobb:256x256x72:type=u16", 0.5, false},
+                                         Scene{"torus:64:type=u8", 0, false},
+                                         Scene{"sphere:64x64x32:spacing=1,1,2", 0.25, true},
+                                         Scene{"gyroid:96x60x96:spacing=1,1.6,1", 0, true}),
+                         [](const auto& scene) {
+                             std::string name = scene.param.name;
+                             std::replace_if(
+                                 name.begin(), name.end(), [](char c) { return !std::isalnum(c); },
+                                 '_');
+                             return name;
+                         });
 
 // Oblique axes, shear and mirroring: the world, not the grid, is what is seen.
 TEST_F(GpuTest, ObliqueShearedAndMirrored) {
-    Volume volume = sampled("torus:48");
+    Volume volume = sampled("torus:64");
     volume.affine.m = {{{0.8, 0.5, 0.1, 10}, {-0.6, 1.1, 0.2, -3}, {0.1, 0.3, -1.4, 50}}};
     ASSERT_LT(volume.affine.determinant(), 0);
     TrilinearCaster voxels(volume, {0});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which reader takes a file, what is said when none does, and options that go with every format.
 #include <isorast/error.h>
+#include <unistd.h>
 
 #include "support.h"
 
@@ -67,12 +68,36 @@ TEST(Load, RawOptionsAreForRawFiles) {
     error_of(scratch.write("a.nrrd", NRRD_2X2X2), options);
 }
 
-TEST(Load, UnreadableFile) {
+// The superuser may read everything: while this lives, be nobody instead.
+class AsNobody {
+public:
+    AsNobody() { became_ = geteuid() == 0 && seteuid(65534) == 0; }
+    AsNobody(const AsNobody&) = delete;
+    AsNobody& operator=(const AsNobody&) = delete;
+    ~AsNobody() {
+        if (became_ && seteuid(0) != 0) std::abort();
+    }
+
+private:
+    bool became_ = false;
+};
+
+void expect_permission_denied(const std::string& path) {
+    const AsNobody nobody;
+    const std::string message = error_of(path);
+    EXPECT_NE(message.find("Permission denied"), std::string::npos) << message;
+}
+
+TEST(Load, UnreadableFileAndFolder) {
+    using std::filesystem::perms;
     const Scratch scratch;
     const std::string path = scratch.write("a.nrrd", NRRD_2X2X2);
-    std::filesystem::permissions(path, std::filesystem::perms::none);
-    if (access(path.c_str(), R_OK) == 0) GTEST_SKIP() << "this user may read everything";
-    error_of(path);
+    std::filesystem::permissions(path, perms::none);
+    std::filesystem::permissions(scratch.path(""), perms::all);
+    expect_permission_denied(path);
+    std::filesystem::permissions(scratch.path(""), perms::none);
+    expect_permission_denied(path);
+    std::filesystem::permissions(scratch.path(""), perms::all);
 }
 
 }  // namespace

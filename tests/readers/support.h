@@ -84,11 +84,9 @@ void expect_voxels(const Volume& volume, const std::vector<T>& expected) {
 void expect_affine(const Volume& volume, const std::array<std::array<double, 4>, 3>& expected,
                    double tolerance = 1e-6);
 
-// The message of the Error that loading throws. Checks that it is one line, names the file
-// (`mention`, else the path), comes within a second, and that no more than 64 MiB were asked for on
-// the way.
-std::string error_of(const std::string& path, const LoadOptions& options = {},
-                     const std::string& mention = "");
+// The message of the Error that loading throws. Checks that it is one line, names the file, comes
+// within a second, and that no more than 64 MiB were asked for on the way.
+std::string error_of(const std::string& path, const LoadOptions& options = {});
 
 // The folder with real volumes, or nothing.
 std::optional<std::string> data_folder();

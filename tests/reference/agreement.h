@@ -40,14 +40,6 @@ inline bool smooth(const Picture& truth, uint32_t x, uint32_t y, double jump) {
     return true;
 }
 
-// Degrees between the normals. Which side of a surface seen edge-on faces the eye is decided by
-// rounding, so there either will do.
-inline double angle_between(const Hit& seen, const Hit& truth) {
-    double cosine = glm::dot(seen.normal, truth.normal);
-    if (truth.facing < 0.1) cosine = std::abs(cosine);
-    return glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
-}
-
 inline Agreement agreement(const Picture& picture, const Picture& truth, double jump) {
     Agreement result;
     uint64_t both = 0, either = 0;
@@ -62,7 +54,7 @@ inline Agreement agreement(const Picture& picture, const Picture& truth, double 
             if (!hit || !smooth(truth, x, y, jump)) continue;
             const Hit &a = picture.at(x, y), &b = truth.at(x, y);
             squares += (a.depth - b.depth) * (a.depth - b.depth);
-            angles += angle_between(a, b);
+            angles += glm::degrees(std::acos(std::clamp(glm::dot(a.normal, b.normal), -1.0, 1.0)));
             ++result.measured;
         }
     }

@@ -90,7 +90,7 @@ private:
             step[axis] = 1e-5 * half_side_;
             gradient[axis] = above_level(ray.at(high) + step) - above_level(ray.at(high) - step);
         }
-        return hit_with_gradient(high, gradient, ray);
+        return hit_with_gradient(high, gradient, ray, inside);
     }
 
     Formula formula_;

@@ -29,17 +29,19 @@ struct Ray {
 
 struct Hit {
     double depth = INFINITE;
-    dvec3 normal{0, 0, 0};  // world space, unit length, facing the eye
-    double facing = 1;      // cosine of the angle between the normal and the way to the eye
+    dvec3 normal{0, 0, 0};  // world space, unit length, on the viewer's side of the surface
 };
 
-// A hit whose normal is along the gradient; where the gradient vanishes the surface faces the eye.
-inline Hit hit_with_gradient(double depth, const dvec3& gradient, const Ray& ray) {
+// A hit where the ray crosses the surface into higher values, or out of them (`leaving`). A normal
+// by central differences can point away from the eye all the same: then it is turned back until it
+// is edge-on.
+inline Hit hit_with_gradient(double depth, const dvec3& gradient, const Ray& ray, bool leaving) {
     dvec3 towards = -glm::normalize(ray.direction);
     double length = glm::length(gradient);
-    dvec3 normal = length > 0 ? gradient / length : towards;
+    if (length == 0) return {depth, towards};
+    dvec3 normal = (leaving ? 1 : -1) / length * gradient;
     double facing = glm::dot(normal, towards);
-    return {depth, facing < 0 ? -normal : normal, std::abs(facing)};
+    return {depth, facing < 0 ? glm::normalize(normal - facing * towards) : normal};
 }
 
 struct Picture {

@@ -107,11 +107,14 @@ public:
         Ray ray{inverse_ * (world.origin - origin_), inverse_ * world.direction};
         auto range = clip(ray, dvec3(dims_ - 1));
         if (!range || kinds_.empty()) return std::nullopt;
-        double depth = INFINITE;
-        for (size_t surface = 0; surface < isovalues_.size(); ++surface)
-            depth = std::min(depth, first_hit(ray, *range, surface));
-        if (depth == INFINITE) return std::nullopt;
-        return hit_with_gradient(depth, glm::transpose(inverse_) * gradient(ray.at(depth)), world);
+        Crossing nearest;
+        for (size_t surface = 0; surface < isovalues_.size(); ++surface) {
+            Crossing crossing = first_hit(ray, *range, surface);
+            if (crossing.depth < nearest.depth) nearest = crossing;
+        }
+        if (nearest.depth == INFINITE) return std::nullopt;
+        dvec3 gradient_there = glm::transpose(inverse_) * gradient(ray.at(nearest.depth));
+        return hit_with_gradient(nearest.depth, gradient_there, world, nearest.leaving);
     }
 
     Picture render(const isorast::Camera& camera, isorast::Size size) const {
@@ -144,6 +147,11 @@ public:
     }
 
 private:
+    struct Crossing {
+        double depth = INFINITE;
+        bool leaving = false;  // from inside to outside
+    };
+
     glm::ivec3 cells() const { return dims_ - 1; }
 
     std::array<double, 8> corners_of(const glm::ivec3& cell) const {
@@ -192,28 +200,28 @@ private:
 
     // Whether the ray is inside is carried from cell to cell and over skipped blocks, so that
     // rounding on their faces loses no crossing.
-    double first_hit(const Ray& ray, std::pair<double, double> range, size_t surface) const {
-        double depth = INFINITE;
+    Crossing first_hit(const Ray& ray, std::pair<double, double> range, size_t surface) const {
+        Crossing crossing;
         std::optional<bool> inside;
         walk(ray, range.first, range.second, BLOCK, glm::ivec3(0), blocks_ - 1,
              [&](const glm::ivec3& block, double enter, double leave) {
                  Block kind = kinds_[surface][block_index(block)];
                  if (kind == Block::crossed) {
-                     depth = hit_in_block(ray, block, enter, leave, isovalues_[surface], inside);
+                     crossing = hit_in_block(ray, block, enter, leave, isovalues_[surface], inside);
                  } else if (kind == Block::holed) {
                      inside.reset();
                  } else {
-                     if (inside && *inside != (kind == Block::inside)) depth = enter;
+                     if (inside && *inside != (kind == Block::inside)) crossing = {enter, *inside};
                      inside = kind == Block::inside;
                  }
-                 return depth != INFINITE;
+                 return crossing.depth != INFINITE;
              });
-        return depth;
+        return crossing;
     }
 
-    double hit_in_block(const Ray& ray, const glm::ivec3& block, double enter, double leave,
-                        double isovalue, std::optional<bool>& inside) const {
-        double depth = INFINITE;
+    Crossing hit_in_block(const Ray& ray, const glm::ivec3& block, double enter, double leave,
+                          double isovalue, std::optional<bool>& inside) const {
+        Crossing crossing;
         glm::ivec3 lowest = block * BLOCK, highest = glm::min(lowest + BLOCK, cells()) - 1;
         walk(ray, enter, leave, 1, lowest, highest,
              [&](const glm::ivec3& cell, double t0, double t1) {
@@ -225,10 +233,11 @@ private:
                  Cubic cubic = along(corners, ray.at(t0) - dvec3(cell), (t1 - t0) * ray.direction);
                  cubic[0] -= isovalue;
                  if (!inside) inside = cubic[0] >= 0;
-                 if (auto u = first_crossing(cubic, *inside)) depth = t0 + *u * (t1 - t0);
-                 return depth != INFINITE;
+                 if (auto u = first_crossing(cubic, *inside))
+                     crossing = {t0 + *u * (t1 - t0), *inside};
+                 return crossing.depth != INFINITE;
              });
-        return depth;
+        return crossing;
     }
 
     // The trilinear interpolant along start + u * way.

@@ -3,6 +3,11 @@
 // bisections. EXACT solves each cell's cubic instead.
 
 layout(constant_id = 2) const bool EXACT = false;
+// Sample through the texture unit, as in the paper; CPU drivers round its results to 8 bits for 8-bit voxels,
+// so there voxels are fetched and interpolated.
+layout(constant_id = 3) const bool FILTERED = true;
+
+float field_at(Brick brick, vec3 p) { return FILTERED ? sample_filtered(brick, p) : sample_exactly(brick, p); }
 
 struct March {
     Ray ray;
@@ -38,11 +43,11 @@ bool step_through(inout March march, ivec3 block, float end) {
     float before = march.t;
     for (float t = march.t; ; t = min(t + step, end)) {
         const bool was_inside = march.inside;
-        if (crossed_to(march, sample_filtered(brick, position_at(march, t)) >= march.iso)) {
+        if (crossed_to(march, field_at(brick, position_at(march, t)) >= march.iso)) {
             float a = before, b = t;
             for (int i = 0; i < 3; ++i) {
                 const float middle = 0.5 * (a + b);
-                const bool inside = sample_filtered(brick, position_at(march, middle)) >= march.iso;
+                const bool inside = field_at(brick, position_at(march, middle)) >= march.iso;
                 if (inside == was_inside) a = middle;
                 else b = middle;
             }

@@ -35,16 +35,16 @@ private:
 Raymarch::Raymarch(const TechniqueContext& context) {
     const gpu::Device& device = context.grid.device();
     hardware_ = context.options.rasterizer == Rasterizer::hardware;
-    const uint32_t exact = context.options.exact;
+    const std::vector<uint32_t> constants{context.options.exact, device.is_cpu() ? 0u : 1u};
     if (!hardware_) {
-        const auto info = context.grid.pipeline_info("march", {Kind::image, Kind::image}, 0, {exact});
+        const auto info = context.grid.pipeline_info("march", {Kind::image, Kind::image}, 0, constants);
         march_ = gpu::Pipeline::compute(device, info, march_comp);
         return;
     }
     if (!device.has_graphics() || !device.features().dynamic_rendering)
         throw Error(fmt::format("raymarch: {} has no graphics queue with dynamic rendering; use "
                                 "--rasterizer compute", device.info().name));
-    const auto info = context.grid.pipeline_info("march", {}, 0, {exact});
+    const auto info = context.grid.pipeline_info("march", {}, 0, constants);
     const gpu::Shader vertex{VK_SHADER_STAGE_VERTEX_BIT, whole_picture_vert};
     const VkFormat depth = VK_FORMAT_D32_SFLOAT;
     march_ = gpu::Pipeline::graphics(device, info, {vertex, {VK_SHADER_STAGE_FRAGMENT_BIT, march_frag}},

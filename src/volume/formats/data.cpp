@@ -159,31 +159,7 @@ std::vector<Part> parts_of(const DataSource& source, uint64_t share, uint64_t fi
     return parts;
 }
 
-}  // namespace
-
-uint64_t file_size(const std::string& path) {
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) fail(path, "there is no such file");
-    if (std::filesystem::is_directory(status)) fail(path, "expected a file, found a directory");
-    if (!std::filesystem::is_regular_file(status)) fail(path, "expected a regular file");
-    const uint64_t size = std::filesystem::file_size(path, error);
-    if (error) fail(path, "its size cannot be read: {}", error.message());
-    if (size == 0) fail(path, "the file is empty");
-    return size;
-}
-
-void set_time(Volume& volume, uint64_t steps, const LoadOptions& options) {
-    if (steps > UINT32_MAX)
-        fail(volume.name, "{} time steps are more than 32 bits can count", steps);
-    if (options.time_step >= steps)
-        fail(volume.name, "time step {} was asked for, but the file holds {}, counted from 0",
-             options.time_step, steps);
-    volume.time_steps = static_cast<uint32_t>(steps);
-    volume.time_step = options.time_step;
-}
-
-void read_voxels(Volume& volume, const DataSource& source) {
+void read_parts(Volume& volume, const DataSource& source) {
     const uint64_t step = checked_byte_count(volume);
     uint64_t total = 0;
     if (__builtin_mul_overflow(step, volume.time_steps, &total) || total > INT64_MAX)
@@ -211,6 +187,39 @@ void read_voxels(Volume& volume, const DataSource& source) {
         append(volume, source, part, voxels);
     if (swapped) swap_bytes(volume.type, voxels);
     volume.bytes = VoxelBytes::own(std::move(voxels));
+}
+
+}  // namespace
+
+uint64_t file_size(const std::string& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::not_found) fail(path, "there is no such file");
+    if (error) fail(path, "cannot be opened: {}", error.message());
+    if (std::filesystem::is_directory(status)) fail(path, "expected a file, found a directory");
+    if (!std::filesystem::is_regular_file(status)) fail(path, "expected a regular file");
+    const uint64_t size = std::filesystem::file_size(path, error);
+    if (error) fail(path, "its size cannot be read: {}", error.message());
+    if (size == 0) fail(path, "the file is empty");
+    return size;
+}
+
+void set_time(Volume& volume, uint64_t steps, const LoadOptions& options) {
+    if (steps > UINT32_MAX)
+        fail(volume.name, "{} time steps are more than 32 bits can count", steps);
+    if (options.time_step >= steps)
+        fail(volume.name, "time step {} was asked for, but the file holds {}, counted from 0",
+             options.time_step, steps);
+    volume.time_steps = static_cast<uint32_t>(steps);
+    volume.time_step = options.time_step;
+}
+
+void read_voxels(Volume& volume, const DataSource& source) try {
+    read_parts(volume, source);
+} catch (const Error& error) {
+    // What is wrong with a data file is wrong with the file that the user named.
+    if (std::string_view(error.what()).starts_with(volume.name)) throw;
+    fail(volume.name, "{}", error.what());
 }
 
 std::string beside(const std::string& header, std::string_view name) {

@@ -34,7 +34,7 @@ std::string header_file(const std::string& path) {
 std::string image_file(const std::string& header) {
     const std::unique_ptr<char, void (*)(void*)> name(
         nifti_findimgname(header.c_str(), NIFTI_FTYPE_NIFTI1_2), std::free);
-    if (!name) fail(header, "there is no NIfTI data file (.img) beside it");
+    if (!name || name.get() == header) fail(header, "there is no NIfTI data file (.img) beside it");
     return name.get();
 }
 
