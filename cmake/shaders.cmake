@@ -2,7 +2,8 @@
 #
 # Every *.comp, *.task, *.mesh, *.vert and *.frag under src/ is compiled to build/spirv/NAME.h, an array
 # `NAME`: the file's name with '.' as '_'. A line "// variant NAME: -DX -DY" in a shader compiles it
-# once more with these definitions, as array NAME.
+# once more with these definitions, as array NAME. Each is also compiled with -DBRICKED, as NAME_bricked in the
+# same header, for volumes of several bricks.
 
 find_program(GLSLANG glslangValidator REQUIRED)
 
@@ -17,6 +18,9 @@ function(isorast_add_shader target source name)
     add_custom_command(OUTPUT ${header}
         COMMAND ${GLSLANG} -V --quiet --target-env ${environment} ${ARGN} -I${CMAKE_SOURCE_DIR}/src
                 --vn ${name} --depfile ${header}.d -o ${header} ${source}
+        COMMAND ${GLSLANG} -V --quiet --target-env ${environment} ${ARGN} -DBRICKED
+                -I${CMAKE_SOURCE_DIR}/src --vn ${name}_bricked -o ${header}.bricked ${source}
+        COMMAND sh -c "cat ${header}.bricked >>${header}"
         DEPENDS ${source} DEPFILE ${header}.d COMMENT "Shader ${name}" VERBATIM)
     target_sources(${target} PRIVATE ${header})
 endfunction()

@@ -21,7 +21,7 @@ cmake --build build --target isorast_cli
 built=$(now)
 
 mkdir -p out
-./build/isorast render data/brain.nii.gz -o out/demo.png
+./scripts/picture.sh ./build/isorast -o out/demo.png
 rendered=$(now)
 
 echo
@@ -30,4 +30,4 @@ echo "install  $(seconds "$start" "$installed")"
 echo "build    $(seconds "$installed" "$built")"
 echo "render   $(seconds "$built" "$rendered"), from file to picture"
 echo
-echo "Your own volume:  . .cache/env.sh && ./build/isorast render FILE --iso auto -o picture.png"
+echo "Your own volume:  . .cache/env.sh && ./build/isorast render FILE -o picture.png"

@@ -15,7 +15,7 @@ struct HostDevice {
     VkQueue queue = VK_NULL_HANDLE;  // with compute; with graphics too for the hardware rasterizer
     uint32_t queue_family = 0;
     bool storage_16bit = false;        // storageBuffer16BitAccess: required
-    bool texture_arrays = false;       // shaderSampledImageArrayDynamicIndexing: required
+    bool nonuniform_textures = false;  // shaderSampledImageArrayNonUniformIndexing: volumes of several bricks
     bool mesh_shaders = false;         // VK_EXT_mesh_shader with taskShader and meshShader
     bool dynamic_rendering = false;    // Vulkan 1.3 dynamicRendering
     bool storage_without_format = false;  // shaderStorageImageWriteWithoutFormat and ...ExtendedFormats

@@ -118,12 +118,10 @@ Device::Device(const HostDevice& host)
     vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
     has_graphics_ = families.at(queue_family_).queueFlags & VK_QUEUE_GRAPHICS_BIT;
     timestamp_bits_ = families.at(queue_family_).timestampValidBits;
-    if (!host.storage_16bit || !host.texture_arrays)
-        throw Error(
-            "HostDevice: storageBuffer16BitAccess and shaderSampledImageArrayDynamicIndexing must be "
-            "enabled on the adopted device");
+    if (!host.storage_16bit)
+        throw Error("HostDevice: storageBuffer16BitAccess must be enabled on the adopted device");
     features_ = {.storage_16bit = true,
-                 .texture_arrays = true,
+                 .nonuniform_textures = host.nonuniform_textures,
                  .mesh_shaders = host.mesh_shaders,
                  .dynamic_rendering = host.dynamic_rendering,
                  .storage_without_format = host.storage_without_format};
@@ -184,14 +182,17 @@ void Device::create_device() {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES,
         .pNext = features_.mesh_shaders ? &mesh : nullptr,
         .dynamicRendering = features_.dynamic_rendering};
+    VkPhysicalDeviceDescriptorIndexingFeatures indexing{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES,
+        .pNext = properties_.apiVersion >= VK_API_VERSION_1_3 ? &rendering : nullptr,
+        .shaderSampledImageArrayNonUniformIndexing = features_.nonuniform_textures};
     const VkPhysicalDevice16BitStorageFeatures storage{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES,
-        .pNext = properties_.apiVersion >= VK_API_VERSION_1_3 ? &rendering : nullptr,
+        .pNext = properties_.apiVersion >= VK_API_VERSION_1_2 ? &indexing : nullptr,
         .storageBuffer16BitAccess = VK_TRUE};
     const VkPhysicalDeviceFeatures core{
         .shaderStorageImageExtendedFormats = features_.storage_without_format,
-        .shaderStorageImageWriteWithoutFormat = features_.storage_without_format,
-        .shaderSampledImageArrayDynamicIndexing = features_.texture_arrays};
+        .shaderStorageImageWriteWithoutFormat = features_.storage_without_format};
     const float priority = 1;
     const VkDeviceQueueCreateInfo queue_info{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                              .queueFamilyIndex = queue_family_,

@@ -11,7 +11,7 @@ namespace isorast::gpu {
 // What is enabled on the device, not only what it could do.
 struct Features {
     bool storage_16bit = false;        // required: 16-bit entries in block lists
-    bool texture_arrays = false;       // required: volumes of several bricks
+    bool nonuniform_textures = false;  // volumes of several bricks
     bool mesh_shaders = false;
     bool dynamic_rendering = false;
     bool storage_without_format = false;  // formulas sampled on the GPU

@@ -84,17 +84,20 @@ Features supported_features(VkPhysicalDevice physical) {
     vkGetPhysicalDeviceProperties(physical, &properties);
     VkPhysicalDevice16BitStorageFeatures storage{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES};
+    VkPhysicalDeviceDescriptorIndexingFeatures indexing{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES};
     VkPhysicalDeviceDynamicRenderingFeatures rendering{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES};
     VkPhysicalDeviceMeshShaderFeaturesEXT mesh{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT};
     VkPhysicalDeviceFeatures2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &storage};
-    if (properties.apiVersion >= VK_API_VERSION_1_3) storage.pNext = &rendering;
+    if (properties.apiVersion >= VK_API_VERSION_1_2) storage.pNext = &indexing;
+    if (properties.apiVersion >= VK_API_VERSION_1_3) indexing.pNext = &rendering;
     const bool mesh_extension = has_extension(physical, VK_EXT_MESH_SHADER_EXTENSION_NAME);
-    if (mesh_extension && storage.pNext) rendering.pNext = &mesh;
+    if (mesh_extension && indexing.pNext) rendering.pNext = &mesh;
     vkGetPhysicalDeviceFeatures2(physical, &all);
     return {.storage_16bit = storage.storageBuffer16BitAccess == VK_TRUE,
-            .texture_arrays = all.features.shaderSampledImageArrayDynamicIndexing == VK_TRUE,
+            .nonuniform_textures = indexing.shaderSampledImageArrayNonUniformIndexing == VK_TRUE,
             .mesh_shaders = mesh.taskShader && mesh.meshShader,
             .dynamic_rendering = rendering.dynamicRendering == VK_TRUE,
             .storage_without_format = all.features.shaderStorageImageWriteWithoutFormat &&
@@ -135,7 +138,6 @@ DeviceInfo describe(VkPhysicalDevice physical) {
     const auto queue = choose_queue(physical);
     if (!queue) info.why_not_compute = "no compute queue";
     else if (!features.storage_16bit) info.why_not_compute = "no 16-bit storage buffers";
-    else if (!features.texture_arrays) info.why_not_compute = "no indexing of texture arrays";
     else if (basic.limits.maxPerStageDescriptorSampledImages < 80)
         info.why_not_compute = "fewer than 80 textures in a shader";
     if (!info.why_not_compute.empty()) info.why_not_hardware = info.why_not_compute;

@@ -103,6 +103,10 @@ Grid::Grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_s
                                 volume.name, plan_.count(),
                                 max_brick_side ? max_brick_side : device.limits().maxImageDimension3D,
                                 shared::MAX_BRICKS));
+    if (!plan_.one() && !device.features().nonuniform_textures)
+        throw Error(fmt::format("{}: does not fit one 3D image of {}, which cannot index several "
+                                "(shaderSampledImageArrayNonUniformIndexing); use another device or a "
+                                "smaller volume", volume.name, device.info().name));
     info_ = make_info(plan_);
     make_scene_layout();
     using Memory = gpu::Buffer::Memory;
@@ -111,7 +115,7 @@ Grid::Grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_s
     frame_buffer_ =
         gpu::Buffer(device, sizeof(shared::FrameInfo), Memory::device, "the frame's description");
     minmax_blocks_ = gpu::Pipeline::compute(device, pipeline_info("minmax blocks", {}, 0),
-                                            minmax_blocks_comp);
+                                            pick(minmax_blocks_comp, minmax_blocks_comp_bricked));
     minmax_level_ = gpu::Pipeline::compute(device, pipeline_info("minmax level", {}, 4),
                                            minmax_level_comp);
     const bool on_gpu = volume.field && volume.bytes.span().empty() && can_sample_on_gpu(device, stored_);
@@ -151,7 +155,7 @@ std::array<double, 2> Grid::value_range() const {
 
 gpu::PipelineInfo Grid::pipeline_info(const char* name, std::vector<gpu::Kind> bindings,
                                       uint32_t push_bytes, std::vector<uint32_t> more) const {
-    std::vector<uint32_t> constants{stored_.bits, plan_.one() ? 0u : 1u};
+    std::vector<uint32_t> constants{stored_.bits};
     constants.insert(constants.end(), more.begin(), more.end());
     return {name, scene_layout_, std::move(bindings), push_bytes, std::move(constants)};
 }
@@ -251,7 +255,7 @@ void Grid::sample_on_gpu(const Volume& volume) {
         glm::uvec3 origin;
     };
     const auto sampler = gpu::Pipeline::compute(
-        device_, {"sample field", scene_layout_, {gpu::Kind::image}, sizeof(Push), {stored_.bits, 0}},
+        device_, {"sample field", scene_layout_, {gpu::Kind::image}, sizeof(Push), {stored_.bits}},
         sample_field_comp);
     gpu::run_once(device_, [&](gpu::Commands& commands) {
         for (uint32_t i = 0; i < plan_.count(); ++i) commands.discard_to_general(textures_[i]);

@@ -5,6 +5,7 @@
 #include <isorast/volume.h>
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "gpu/commands.h"
@@ -39,9 +40,13 @@ public:
     std::array<double, 2> value_range() const;  // data units; NaN when no voxel is finite
 
     VkDescriptorSetLayout scene_layout() const { return scene_layout_; }
-    // Pipelines start from this: set 0's layout and the constants that scene.glsl wants, then `more`.
+    // Pipelines start from this: set 0's layout and the constant that scene.glsl wants, then `more`.
     gpu::PipelineInfo pipeline_info(const char* name, std::vector<gpu::Kind> bindings,
                                     uint32_t push_bytes, std::vector<uint32_t> more = {}) const;
+    // Every shader that reads voxels comes in two: for one brick, and for several.
+    std::span<const uint32_t> pick(std::span<const uint32_t> one, std::span<const uint32_t> several) const {
+        return plan_.one() ? one : several;
+    }
     // Makes set 0 and gives it to the commands' passes; `frame` becomes the frame's uniform block.
     void begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) const;
     // Rebuilds the min-max pyramid from the bricks.

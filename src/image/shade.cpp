@@ -12,7 +12,8 @@ Shade::Shade(const Grid& grid) : grid_(grid) {
     const auto make = [&](bool color, bool distance) {
         const std::vector bindings{Kind::texture, Kind::texture, Kind::image, Kind::image};
         return gpu::Pipeline::compute(
-            grid.device(), grid.pipeline_info("shade", bindings, 0, {color, distance}), shade_comp);
+            grid.device(), grid.pipeline_info("shade", bindings, 0, {color, distance}),
+            grid.pick(shade_comp, shade_comp_bricked));
     };
     color_ = make(true, false);
     color_and_distance_ = make(true, true);

@@ -1,12 +1,13 @@
 // Descriptor set 0: the frame, the grid, its voxels, its min-max pyramid. Include first.
 // Define SCENE_WRITES_MINMAX before including to write the pyramid.
-#extension GL_KHR_shader_subgroup_ballot : require
+#ifdef BRICKED
+#extension GL_EXT_nonuniform_qualifier : require
+#endif
 #extension GL_EXT_shader_16bit_storage : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "shaders/shared.h"
 
 layout(constant_id = 0) const uint VOXEL_BITS = 8;  // 8 and 16: integers, seen as [0, 1]; 32: floats
-layout(constant_id = 1) const bool BRICKED = false;
 
 layout(set = 0, binding = BIND_FRAME, std140) uniform FrameBlock { FrameInfo frame; };
 layout(set = 0, binding = BIND_GRID, std140) uniform GridBlock { GridInfo grid; };

@@ -35,8 +35,6 @@ ISORAST_CONSTANT uint MAX_SURFACES = 32;  // opaque surfaces in one picture
 
 // Descriptor set 0, the same in every pipeline.
 ISORAST_CONSTANT uint BIND_FRAME = 0, BIND_GRID = 1, BIND_BRICKS = 2, BIND_SAMPLER = 3, BIND_MINMAX = 4;
-// Specialization constants of every shader that reads the grid.
-ISORAST_CONSTANT uint SPEC_VOXEL_BITS = 0, SPEC_BRICKED = 1, SPEC_FIRST_FREE = 2;
 
 struct GridInfo {
     uvec4 voxels;       // xyz: voxels along each axis

@@ -1,6 +1,7 @@
 // Voxels and the trilinear field between them. Stored values: 0..255, 0..65535, or floats.
 // Everything here fetches voxels and interpolates in 32-bit arithmetic: the fixed-point filters of
-// samplers (8 bits of weight) are for marching only (sample_filtered).
+// samplers (8 bits of weight) are for marching only (sample_filtered). Every shader is compiled twice: with
+// BRICKED defined for volumes of several bricks, which needs non-uniform indexing, and without.
 
 // A brick and the voxel that its texel 0 holds.
 struct Brick {
@@ -10,10 +11,13 @@ struct Brick {
 
 // The brick that holds the cell with this lowest corner, its 8 voxels and an apron of one voxel around.
 Brick brick_of(ivec3 cell) {
-    if (!BRICKED) return Brick(0u, ivec3(0));
+#ifndef BRICKED
+    return Brick(0u, ivec3(0));
+#else
     const ivec3 where = min(cell / ivec3(grid.brick_cells.xyz), ivec3(grid.bricks.xyz) - 1);
     const uint index = uint(where.x) + grid.bricks.x * (uint(where.y) + grid.bricks.y * uint(where.z));
     return Brick(index, max(where * ivec3(grid.brick_cells.xyz) - 1, 0));
+#endif
 }
 
 // 8- and 16-bit voxels come as fractions: rounding gives back the very integer, so that ties are exact.
@@ -23,34 +27,21 @@ float stored_value(float texel) {
     return texel;
 }
 
-// Textures are indexed with one brick at a time: every round serves the threads of the subgroup that want the
-// first waiting thread's brick. That is one round nearly always, and needs no non-uniform indexing.
 float fetch_texel(uint brick, ivec3 texel) {
-    if (!BRICKED) return texelFetch(bricks[0], texel, 0).r;
-    float value = 0.0;
-    for (bool waiting = true; waiting;) {
-        const uint turn = subgroupBroadcastFirst(brick);
-        if (turn == brick) {
-            value = texelFetch(bricks[turn], texel, 0).r;
-            waiting = false;
-        }
-    }
-    return value;
+#ifdef BRICKED
+    return texelFetch(bricks[nonuniformEXT(brick)], texel, 0).r;
+#else
+    return texelFetch(bricks[0], texel, 0).r;
+#endif
 }
 
 float filter_texels(uint brick, vec3 texel) {
-    if (!BRICKED)
-        return textureLod(sampler3D(bricks[0], linear_sampler), texel / vec3(grid.voxels.xyz), 0.0).r;
-    float value = 0.0;
-    for (bool waiting = true; waiting;) {
-        const uint turn = subgroupBroadcastFirst(brick);
-        if (turn == brick) {
-            const vec3 size = vec3(textureSize(sampler3D(bricks[turn], linear_sampler), 0));
-            value = textureLod(sampler3D(bricks[turn], linear_sampler), texel / size, 0.0).r;
-            waiting = false;
-        }
-    }
-    return value;
+#ifdef BRICKED
+    const vec3 size = vec3(textureSize(bricks[nonuniformEXT(brick)], 0));
+    return textureLod(sampler3D(bricks[nonuniformEXT(brick)], linear_sampler), texel / size, 0.0).r;
+#else
+    return textureLod(sampler3D(bricks[0], linear_sampler), texel / vec3(grid.voxels.xyz), 0.0).r;
+#endif
 }
 
 float voxel(Brick brick, ivec3 position) {

@@ -14,7 +14,7 @@ struct Agreement {
     double normal_degrees = 0;  // mean angle over the same pixels
     uint64_t covered = 0;       // pixels that the truth hits
     uint64_t measured = 0;      // pixels that entered depth_rms and normal_degrees
-    uint64_t holes = 0;  // pixels not hit though the truth hits them and all their neighbours
+    uint64_t holes = 0;  // pixels not hit though the truth hits all around them and leaves no gap
 };
 
 inline bool covers(const Picture& picture, uint32_t x, uint32_t y) {
@@ -50,7 +50,7 @@ inline Agreement agreement(const Picture& picture, const Picture& truth, double 
             both += hit && expected;
             either += hit || expected;
             result.covered += expected;
-            result.holes += !hit && deep_inside(truth, x, y);
+            if (!hit && deep_inside(truth, x, y)) result.holes += !truth.solid || truth.solid(x, y);
             if (!hit || !smooth(truth, x, y, jump)) continue;
             const Hit &a = picture.at(x, y), &b = truth.at(x, y);
             squares += (a.depth - b.depth) * (a.depth - b.depth);

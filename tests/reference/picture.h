@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -47,6 +48,9 @@ inline Hit hit_with_gradient(double depth, const dvec3& gradient, const Ray& ray
 struct Picture {
     isorast::Size size;
     std::vector<Hit> hits;  // rows from the top
+    // Whether rays hit everywhere in and just around a pixel; the caster must still live. May be
+    // empty.
+    std::function<bool(uint32_t x, uint32_t y)> solid = {};
     const Hit& at(uint32_t x, uint32_t y) const { return hits[size_t{y} * size.width + x]; }
 };
 
@@ -96,6 +100,12 @@ Picture render(const isorast::Camera& camera, isorast::Size size, const Cast& ca
         });
     }
     threads.clear();  // joins
+    picture.solid = [rays, &cast](uint32_t x, uint32_t y) {
+        for (double v = y - 0.2; v < y + 1.2; v += 0.1)
+            for (double u = x - 0.2; u < x + 1.2; u += 0.1)
+                if (!cast(rays.through(u, v))) return false;
+        return true;
+    };
     return picture;
 }
 

@@ -7,7 +7,7 @@
 
 layout(local_size_x = 32) in;
 
-layout(constant_id = 2) const bool CULLING = true;
+layout(constant_id = 1) const bool CULLING = true;
 
 layout(set = 1, binding = 0, std430) readonly buffer ActiveGroups {
     uint dispatch_x, dispatch_y, dispatch_z;

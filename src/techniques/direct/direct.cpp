@@ -99,8 +99,10 @@ Direct::Direct(const TechniqueContext& context) : grid_(context.grid) {
 
     const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer},
                                           sizeof(DrawPush));
-    const gpu::Shader task{VK_SHADER_STAGE_TASK_BIT_EXT, extract_task};
-    const gpu::Shader mesh{VK_SHADER_STAGE_MESH_BIT_EXT, extract_mesh};
+    const gpu::Shader task{VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)};
+    const gpu::Shader mesh{VK_SHADER_STAGE_MESH_BIT_EXT, grid_.pick(extract_mesh, extract_mesh_bricked)};
+    const gpu::Shader forward_mesh{VK_SHADER_STAGE_MESH_BIT_EXT,
+                                   grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked)};
     const gpu::Shader numbers{VK_SHADER_STAGE_FRAGMENT_BIT, surface_number_frag};
     const VkFormat depth = VK_FORMAT_D32_SFLOAT;
     extract_ = gpu::Pipeline::graphics(device, info, {task, mesh}, {{}, depth});
@@ -108,9 +110,7 @@ Direct::Direct(const TechniqueContext& context) : grid_(context.grid) {
         gpu::Pipeline::graphics(device, info, {task, mesh, numbers}, {{VK_FORMAT_R32_UINT}, depth});
     extract_forward_ =
         gpu::Pipeline::graphics(device, info,
-                                {task,
-                                 {VK_SHADER_STAGE_MESH_BIT_EXT, extract_forward_mesh},
-                                 {VK_SHADER_STAGE_FRAGMENT_BIT, forward_frag}},
+                                {task, forward_mesh, {VK_SHADER_STAGE_FRAGMENT_BIT, forward_frag}},
                                 {{VK_FORMAT_R8G8B8A8_UNORM}, depth});
 }
 

@@ -2,10 +2,10 @@
 // Reference" and "Software"): steps of half a cell in blocks that the isovalue crosses, then three
 // bisections. EXACT solves each cell's cubic instead.
 
-layout(constant_id = 2) const bool EXACT = false;
+layout(constant_id = 1) const bool EXACT = false;
 // Sample through the texture unit, as in the paper; CPU drivers round its results to 8 bits for 8-bit voxels,
 // so there voxels are fetched and interpolated.
-layout(constant_id = 3) const bool FILTERED = true;
+layout(constant_id = 2) const bool FILTERED = true;
 
 float field_at(Brick brick, vec3 p) { return FILTERED ? sample_filtered(brick, p) : sample_exactly(brick, p); }
 

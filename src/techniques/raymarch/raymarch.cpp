@@ -38,7 +38,7 @@ Raymarch::Raymarch(const TechniqueContext& context) {
     const std::vector<uint32_t> constants{context.options.exact, device.is_cpu() ? 0u : 1u};
     if (!hardware_) {
         const auto info = context.grid.pipeline_info("march", {Kind::image, Kind::image}, 0, constants);
-        march_ = gpu::Pipeline::compute(device, info, march_comp);
+        march_ = gpu::Pipeline::compute(device, info, context.grid.pick(march_comp, march_comp_bricked));
         return;
     }
     if (!device.has_graphics() || !device.features().dynamic_rendering)
@@ -47,10 +47,10 @@ Raymarch::Raymarch(const TechniqueContext& context) {
     const auto info = context.grid.pipeline_info("march", {}, 0, constants);
     const gpu::Shader vertex{VK_SHADER_STAGE_VERTEX_BIT, whole_picture_vert};
     const VkFormat depth = VK_FORMAT_D32_SFLOAT;
-    march_ = gpu::Pipeline::graphics(device, info, {vertex, {VK_SHADER_STAGE_FRAGMENT_BIT, march_frag}},
+    march_ = gpu::Pipeline::graphics(device, info, {vertex, {VK_SHADER_STAGE_FRAGMENT_BIT, context.grid.pick(march_frag, march_frag_bricked)}},
                                      {{}, depth});
     march_numbered_ = gpu::Pipeline::graphics(
-        device, info, {vertex, {VK_SHADER_STAGE_FRAGMENT_BIT, march_numbered_frag}},
+        device, info, {vertex, {VK_SHADER_STAGE_FRAGMENT_BIT, context.grid.pick(march_numbered_frag, march_numbered_frag_bricked)}},
         {{VK_FORMAT_R32_UINT}, depth});
 }
 
