@@ -105,6 +105,7 @@ int run(std::vector<std::string> arguments) {
     app.footer("Example: isorast render head.nrrd --iso 300 -o head.png");
     app.formatter(std::make_shared<Help>());  // as CLI11 wants it
     app.set_help_flag("-h,--help", "Show this help");
+    app.set_version_flag("--version", "isorast " ISORAST_VERSION);
     const std::array commands = {make_render(app), make_info(app), make_devices(app),
                                  make_compare(app)};
     std::vector<std::string> names(commands.size());
@@ -115,8 +116,9 @@ int run(std::vector<std::string> arguments) {
         fmt::print(stderr, "{}", app.help());
         return WRONG_USAGE;
     }
-    const bool help = std::ranges::any_of(
-        arguments, [](const std::string& word) { return word == "--help" || word == "-h"; });
+    const bool help = std::ranges::any_of(arguments, [](const std::string& word) {
+        return word == "--help" || word == "-h" || word == "--version";
+    });
     if (!command_first(arguments, names) && !help) return no_command(arguments, names);
 
     const Command* chosen = nullptr;
@@ -129,7 +131,7 @@ int run(std::vector<std::string> arguments) {
             return command->run();
         }
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // the help
+        if (error.get_exit_code() == 0) return app.exit(error);  // the help, the version
         for (const auto& command : commands) {
             if (command->app.parsed()) chosen = command.get();
         }

@@ -39,6 +39,11 @@ std::string difference_path(const std::string& output) {
     return std::filesystem::path(output).replace_extension(".difference.png").string();
 }
 
+std::vector<std::string> with_automatic(std::vector<std::string> names) {
+    names.insert(names.begin(), "auto");
+    return names;
+}
+
 struct Render : Command {
     VolumeArguments arguments;
     ViewArguments view;
@@ -96,10 +101,10 @@ struct Render : Command {
         add_word("--shading", "gooch (default), phong, normals, depth, blocks or forward",
                  "Surface", frame.shading, parse_shading);
         app.add_option("--technique", options.technique,
-                       fmt::format("{}", fmt::join(techniques(), " or ")))
+                       fmt::format("auto, {}", fmt::join(techniques(), " or ")))
             ->type_name("NAME")
             ->capture_default_str()
-            ->check(CLI::IsMember(techniques()).description(""))
+            ->check(CLI::IsMember(with_automatic(techniques())).description(""))
             ->group("Surface");
         add_word("--rasterizer", "hardware, compute or automatic (default)", "Surface",
                  options.rasterizer, parse_rasterizer);
@@ -215,7 +220,7 @@ struct Render : Command {
                 "--color", fmt::format("{} colors for {} isovalues", frame.colors.size(),
                                        frame.isovalues.size()));
         }
-        frame.camera = view.camera(volume);
+        view.camera(volume, {});  // a side that this volume does not have is said at once
         note_what_is_special(volume);
 
         Gpu gpu(gpu_options);
@@ -224,6 +229,10 @@ struct Render : Command {
         }
         Renderer renderer(gpu, volume, options);
         note_isovalues_outside(volume.name, renderer.value_range());
+        if (options.technique == "auto" && !options.exact && !gpu.info().why_not_hardware.empty())
+            note(fmt::format("{}: {}: direct cannot run, {} instead", gpu.info().name,
+                             gpu.info().why_not_hardware, renderer.technique()));
+        frame.camera = view.camera(volume, renderer.surface_hull(frame.isovalues));
 
         std::vector<FrameStats> all_stats;
         Image image;
@@ -237,7 +246,7 @@ struct Render : Command {
         RenderReport report{.output = output,
                             .size = frame.size,
                             .isovalues = frame.isovalues,
-                            .technique = options.technique,
+                            .technique = renderer.technique(),
                             .rasterizer = std::string(name_of(renderer.rasterizer())),
                             .device = gpu.info().name,
                             .driver = gpu.info().driver,

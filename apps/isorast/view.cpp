@@ -82,9 +82,11 @@ void ViewArguments::add_to(CLI::App& app) {
     from->excludes(side);
 }
 
-Camera ViewArguments::camera(const Volume& volume) const {
-    if (!preset.empty()) return *view_preset(volume, preset, orbit);
-    const Camera fitted = isorast::orbit(volume, azimuth, elevation, orbit);
+Camera ViewArguments::camera(const Volume& volume, const VoxelPoints& shown) const {
+    OrbitOptions options = orbit;
+    options.shown = shown;
+    if (!preset.empty()) return *view_preset(volume, preset, options);
+    const Camera fitted = isorast::orbit(volume, azimuth, elevation, options);
     return position ? placed(*this, fitted) : fitted;
 }
 

@@ -12,7 +12,8 @@ struct ViewArguments {
     std::optional<std::array<double, 3>> position, target, up;
 
     void add_to(CLI::App& app);
-    Camera camera(const Volume& volume) const;
+    // Shows these points, or the whole volume when there are none.
+    Camera camera(const Volume& volume, const VoxelPoints& shown) const;
 };
 
 }  // namespace isorast::cli

@@ -4,10 +4,14 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace isorast {
 
 struct Volume;
+
+// Positions in voxel indices that a camera is to show.
+using VoxelPoints = std::vector<std::array<double, 3>>;
 
 struct Camera {
     std::array<double, 3> position{0, 0, 1}, target{0, 0, 0}, up{0, 1, 0};
@@ -21,12 +25,13 @@ struct OrbitOptions {
     double zoom = 1;          // 2 shows things twice as large
     double fov_degrees = 30;
     bool orthographic = false;
+    VoxelPoints shown;  // what to fit; empty: the whole volume. See Renderer::surface_hull.
 };
 
-// A camera that looks at the middle of the volume's box and shows all of it, from `azimuth` degrees around
+// A camera that looks at the middle of what is shown and shows all of it, from `azimuth` degrees around
 // the up axis and `elevation` degrees above the horizon. Up is +z of the world, and azimuth 0 looks from the
-// front: from the patient's anterior (+y) in RAS, else from -y. The fit uses the box's real
-// world corners: anisotropic spacing, oblique and sheared axes keep their aspect.
+// front: from the patient's anterior (+y) in RAS, else from -y. The fit uses real
+// world positions: anisotropic spacing, oblique and sheared axes keep their aspect.
 Camera orbit(const Volume& volume, double azimuth_degrees, double elevation_degrees,
              const OrbitOptions& options = {});
 

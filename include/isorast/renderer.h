@@ -21,7 +21,8 @@ std::optional<Rasterizer> parse_rasterizer(std::string_view word);
 std::optional<Shading> parse_shading(std::string_view word);
 
 struct RendererOptions {
-    std::string technique = "direct";  // one of techniques()
+    // One of techniques(); "auto": direct where the device has mesh shaders, else raymarch.
+    std::string technique = "auto";
     Rasterizer rasterizer = Rasterizer::automatic;
     bool exact = false;                // raymarch: solve each cell's cubic instead of stepping
     uint32_t max_brick_side = 0;       // largest side of a 3D image in voxels; 0: what the device allows
@@ -78,6 +79,10 @@ public:
     const FrameStats& stats() const;
     // The range of the finite voxels, in data units, as found on the GPU.
     std::array<double, 2> value_range() const;
+    // Corners of the outermost blocks that the surfaces at these isovalues (data units) cross; empty when there is
+    // no surface. For cameras that fit the object and not the empty space around it: OrbitOptions::shown.
+    VoxelPoints surface_hull(const std::vector<double>& isovalues) const;
+    std::string technique() const;  // what "auto" became
     Rasterizer rasterizer() const;  // what `automatic` became
 
     class State;

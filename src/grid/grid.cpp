@@ -269,30 +269,71 @@ void Grid::sample_on_gpu(const Volume& volume) {
     });
 }
 
+std::vector<std::array<float, 2>> Grid::read_level(uint32_t level) const {
+    const uvec4 nodes = info_.levels[level];
+    const uint32_t count = product(nodes);
+    // Copies begin and end at whole words.
+    const uint64_t node_bytes = 2 * stored_.bytes(), skip = nodes.w * node_bytes & 3;
+    const uint64_t bytes = (count * node_bytes + skip + 3) & ~uint64_t{3};
+    gpu::Buffer host(device_, bytes, gpu::Buffer::Memory::host, "reading min-max blocks");
+    gpu::run_once(device_, [&](gpu::Commands& commands) {
+        commands.copy(minmax_, nodes.w * node_bytes - skip, host, 0, bytes);
+    });
+    std::vector<std::array<float, 2>> ranges(count);
+    const auto read = [&](auto zero) {
+        using T = decltype(zero);
+        const T* values = reinterpret_cast<const T*>(host.data<std::byte>() + skip);
+        for (size_t i = 0; i < ranges.size(); ++i)
+            ranges[i] = {float(values[2 * i]), float(values[2 * i + 1])};
+    };
+    if (stored_.bits == 8) read(uint8_t{});
+    else if (stored_.bits == 16) read(uint16_t{});
+    else read(float{});
+    return ranges;
+}
+
 void Grid::find_range() {
-    // The root of the pyramid holds the range, except that floats' least value may stand for voxels that
-    // are not finite: then the range is what the upload saw.
-    gpu::Buffer root(device_, 8, gpu::Buffer::Memory::host, "the range");
     gpu::run_once(device_, [&](gpu::Commands& commands) {
         commands.update(info_buffer_, 0, &info_, sizeof(info_));
         begin_frame(commands, {});
         build_minmax(commands);
-        const uint64_t bytes = 2 * stored_.bytes();
-        commands.copy(minmax_, info_.levels[info_.bricks.w - 1].w * bytes & ~uint64_t{3}, root, 0,
-                      std::max<uint64_t>(bytes, 4));
     });
-    if (stored_.bits == 8) {
-        const uint8_t* bytes = root.data<uint8_t>() + 2 * (info_.levels[info_.bricks.w - 1].w & 1);
-        range_ = {float(bytes[0]), float(bytes[1])};
-    } else if (stored_.bits == 16) {
-        range_ = {float(root.data<uint16_t>()[0]), float(root.data<uint16_t>()[1])};
-    } else if (range_.least > range_.greatest && root.data<float>()[1] != NOT_FINITE) {
-        range_ = {root.data<float>()[0], root.data<float>()[1]};
+    // The root of the pyramid holds the range, except that floats' least value may stand for voxels that
+    // are not finite: then the range is what the upload saw.
+    if (range_.least > range_.greatest) {
+        const auto [least, greatest] = read_level(info_.bricks.w - 1).front();
+        if (greatest != NOT_FINITE) range_ = {least, greatest};
     }
     info_.range = {range_.least, range_.greatest, 0, 0};
     gpu::run_once(device_, [&](gpu::Commands& commands) {
         commands.update(info_buffer_, 0, &info_, sizeof(info_));
     });
+}
+
+VoxelPoints Grid::crossed_hull(const std::vector<float>& isovalues) const {
+    // The finest level with at most 2^18 nodes: enough for a camera, and quick to read.
+    uint32_t level = 0;
+    while (product(info_.levels[level]) > 1u << 18) ++level;
+    const auto ranges = read_level(level);
+    const glm::uvec3 nodes = info_.levels[level];
+    const glm::dvec3 side(shared::BLOCK << level), last = glm::dvec3(info_.voxels) - 1.0;
+    VoxelPoints points;
+    for (uint32_t row = 0; row < nodes.y * nodes.z; ++row) {
+        uint32_t first = nodes.x, end = 0;
+        for (uint32_t x = 0; x < nodes.x; ++x) {
+            const auto& [low, high] = ranges[row * nodes.x + x];
+            if (std::ranges::none_of(isovalues, [&](float iso) { return low < iso && high >= iso; }))
+                continue;
+            first = std::min(first, x);
+            end = x + 1;
+        }
+        for (int c = 0; c < 8 && end > 0; ++c) {
+            const glm::uvec3 corner(c & 1 ? end : first, row % nodes.y + (c >> 1 & 1), row / nodes.y + (c >> 2));
+            const glm::dvec3 p = glm::min(glm::dvec3(corner) * side, last);
+            points.push_back({p.x, p.y, p.z});
+        }
+    }
+    return points;
 }
 
 }  // namespace isorast

@@ -2,6 +2,7 @@
 // Grid: a volume resident on the GPU as 3D textures (bricks), and the min-max of its blocks with a pyramid
 // up to the root (Kreskowski 2022, section 3.3). It also owns descriptor set 0, which every pass sees.
 #pragma once
+#include <isorast/camera.h>
 #include <isorast/volume.h>
 
 #include <array>
@@ -38,6 +39,9 @@ public:
     uint64_t volume_bytes() const;
     uint64_t extra_bytes() const;
     std::array<double, 2> value_range() const;  // data units; NaN when no voxel is finite
+    // Corners of the first and last block of each row of blocks along x that these isovalues (stored
+    // units) cross.
+    VoxelPoints crossed_hull(const std::vector<float>& isovalues) const;
 
     VkDescriptorSetLayout scene_layout() const { return scene_layout_; }
     // Pipelines start from this: set 0's layout and the constant that scene.glsl wants, then `more`.
@@ -58,6 +62,8 @@ private:
     void upload_brick(const Volume& volume, uint32_t brick, gpu::Buffer& staging);
     void sample_on_gpu(const Volume& volume);
     void find_range();
+    // The stored range of every node of a level of the pyramid, read back.
+    std::vector<std::array<float, 2>> read_level(uint32_t level) const;
 
     const gpu::Device& device_;
     Stored stored_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cameras that show a whole volume: the eight world corners of the box of its voxel centres are
-// fitted into the square frustum across the shorter side of the picture. Everything happens in
+// Cameras that show a whole volume, or a part of it: world positions are fitted into the square
+// frustum across the shorter side of the picture. Everything happens in
 // world space, so left-handed voxel axes (negative determinant) are not mirrored.
 #include <isorast/camera.h>
 #include <isorast/error.h>
@@ -17,37 +17,49 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double FILL = 0.96;  // share of the frustum that the box may fill: a margin of 4 %
+constexpr double FILL = 0.96;  // share of the frustum to fill: a margin of 4 %
 
 std::array<double, 3> array(const dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
-struct Box {
-    dvec3 middle;
-    std::array<dvec3, 8> corners;  // relative to the middle
-    double half_voxel;             // of the largest spacing; keeps the fit finite for thin boxes
-};
-
-Box world_box(const Volume& volume) {
-    const auto world = [&](double i, double j, double k) {
+// What to show, in world positions.
+std::vector<dvec3> world_points(const Volume& volume, const VoxelPoints& shown) {
+    VoxelPoints points = shown;
+    if (points.empty())
+        for (int c = 0; c < 8; ++c)
+            points.push_back({c & 1 ? volume.dims[0] - 1.0 : 0, c & 2 ? volume.dims[1] - 1.0 : 0,
+                              c & 4 ? volume.dims[2] - 1.0 : 0});
+    std::vector<dvec3> world;
+    for (const auto& [i, j, k] : points) {
         const auto p = volume.affine(i, j, k);
-        return dvec3(p[0], p[1], p[2]);
-    };
-    const dvec3 last(volume.dims[0] - 1.0, volume.dims[1] - 1.0, volume.dims[2] - 1.0);
-    Box box;
-    box.middle = world(last.x / 2, last.y / 2, last.z / 2);
-    for (int c = 0; c < 8; ++c) {
-        box.corners[c] =
-            world(c & 1 ? last.x : 0, c & 2 ? last.y : 0, c & 4 ? last.z : 0) - box.middle;
+        world.emplace_back(p[0], p[1], p[2]);
     }
-    const auto spacing = volume.affine.spacing();
-    box.half_voxel = *std::max_element(spacing.begin(), spacing.end()) / 2;
-    if (!(box.half_voxel > 0)) box.half_voxel = 0.5;
-    return box;
+    return world;
 }
 
-// Look at the middle of the box from the direction `eye`; `eye` and `up` are orthonormal.
+// The middle of the points' extents along the camera's axes.
+dvec3 middle_of(const std::vector<dvec3>& points, const std::array<dvec3, 3>& axes) {
+    dvec3 middle(0);
+    for (const dvec3& axis : axes) {
+        double low = INFINITY, high = -INFINITY;
+        for (const dvec3& point : points) {
+            low = std::min(low, glm::dot(point, axis));
+            high = std::max(high, glm::dot(point, axis));
+        }
+        middle += (low + high) / 2 * axis;
+    }
+    return middle;
+}
+
+// Half the largest spacing: keeps the fit finite for volumes that are one voxel thin.
+double half_voxel(const Volume& volume) {
+    const auto spacing = volume.affine.spacing();
+    const double half = *std::max_element(spacing.begin(), spacing.end()) / 2;
+    return half > 0 ? half : 0.5;
+}
+
+// Look at the middle of what is shown from the direction `eye`; `eye` and `up` are orthonormal.
 Camera look_from(const Volume& volume, const dvec3& eye, const dvec3& up_without_roll,
                  const OrbitOptions& options) {
     if (!(options.zoom > 0) || !std::isfinite(options.zoom) ||
@@ -63,21 +75,23 @@ Camera look_from(const Volume& volume, const dvec3& eye, const dvec3& up_without
     const dvec3 up = std::cos(roll) * up_without_roll + std::sin(roll) * right_without_roll;
     const dvec3 right = glm::cross(up, eye);
 
-    // Find the closest distance, and the smallest orthographic height, that show every corner.
-    const Box box = world_box(volume);
+    // Find the closest distance, and the smallest orthographic height, that show every point.
+    const std::vector<dvec3> points = world_points(volume, options.shown);
+    const dvec3 middle = middle_of(points, {right, up, eye});
+    const double least = half_voxel(volume);
     const double slope = std::tan(glm::radians(options.fov_degrees) / 2);
     double distance = 0, half_height = 0;
-    for (const dvec3& corner : box.corners) {
-        const double side = std::max(
-            {std::abs(glm::dot(corner, right)), std::abs(glm::dot(corner, up)), box.half_voxel});
+    for (const dvec3& point : points) {
+        const dvec3 p = point - middle;
+        const double side = std::max({std::abs(glm::dot(p, right)), std::abs(glm::dot(p, up)), least});
         half_height = std::max(half_height, side / FILL);
-        distance = std::max(distance, side / (FILL * slope) + glm::dot(corner, eye));
+        distance = std::max(distance, side / (FILL * slope) + glm::dot(p, eye));
     }
 
     // Zoom narrows the view and leaves the eye where it is, so that it never enters the object.
     Camera camera;
-    camera.position = array(box.middle + distance * eye);
-    camera.target = array(box.middle);
+    camera.position = array(middle + distance * eye);
+    camera.target = array(middle);
     camera.up = array(up);
     camera.fov_degrees = 2 * glm::degrees(std::atan(slope / options.zoom));
     camera.orthographic = options.orthographic;

@@ -13,6 +13,14 @@ namespace isorast {
 
 namespace {
 
+// "auto" becomes what the device can do.
+RendererOptions resolved(const Gpu& gpu, RendererOptions options) {
+    const bool direct = gpu.info().why_not_hardware.empty() && gpu.device().features().mesh_shaders &&
+                        options.rasterizer != Rasterizer::compute && !options.exact;
+    if (options.technique == "auto") options.technique = direct ? "direct" : "raymarch";
+    return options;
+}
+
 std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
     std::string known;
     for (const TechniqueEntry& entry : technique_registry()) {
@@ -31,7 +39,7 @@ const Volume& checked(const Volume& volume) {
 
 Renderer::State::State(Gpu& gpu, const Volume& volume, const RendererOptions& options)
     : device_(gpu.device()),
-      options_(options),
+      options_(resolved(gpu, options)),
       placement_{volume.affine, volume.dims},
       grid_(device_, checked(volume), options.max_brick_side),
       technique_(make_technique({grid_, options_})),
@@ -161,6 +169,12 @@ Renderer::~Renderer() = default;
 Image Renderer::render(const Frame& frame) { return state_->render(frame); }
 const FrameStats& Renderer::stats() const { return state_->stats(); }
 std::array<double, 2> Renderer::value_range() const { return state_->grid().value_range(); }
+VoxelPoints Renderer::surface_hull(const std::vector<double>& isovalues) const {
+    std::vector<float> stored;
+    for (double isovalue : isovalues) stored.push_back(state_->grid().stored().from_value(isovalue));
+    return state_->grid().crossed_hull(stored);
+}
+std::string Renderer::technique() const { return state_->options().technique; }
 Rasterizer Renderer::rasterizer() const { return state_->technique().rasterizer(); }
 
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame, uint32_t slot) {

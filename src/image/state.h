@@ -27,6 +27,7 @@ public:
     // Submits frames without reading them back, several in flight; their passes' times, in order.
     std::vector<std::vector<gpu::TimedPass>> run(const std::vector<Frame>& frames);
 
+    const RendererOptions& options() const { return options_; }
     const Grid& grid() const { return grid_; }
     const Technique& technique() const { return *technique_; }
     const FrameStats& stats() const { return stats_; }

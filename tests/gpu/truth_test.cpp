@@ -13,7 +13,7 @@ using namespace reference;
 struct Scene {
     std::string name;
     double level;
-    bool smooth;  // sampled finely enough to be held against its formula
+    bool exact = false;  // ask for RendererOptions::exact
 };
 
 void PrintTo(const Scene& scene, std::ostream* out) {
@@ -23,8 +23,8 @@ void PrintTo(const Scene& scene, std::ostream* out) {
 // A neighbour that is further away lies on another part of the surface; see agreement().
 constexpr double JUMP_VOXELS = 4;
 
-void expect_agreement(const Agreement& a, double voxel, const std::string& what) {
-    EXPECT_GE(a.overlap, 0.999) << what;
+void expect_agreement(const Agreement& a, double voxel, double overlap, const std::string& what) {
+    EXPECT_GE(a.overlap, overlap) << what;
     EXPECT_LE(a.depth_rms / voxel, 0.1) << what;
     EXPECT_LE(a.normal_degrees, 2) << what;
     EXPECT_EQ(a.holes, 0u) << what;
@@ -39,40 +39,35 @@ TEST_P(Truth, FromManySides) {
     double voxel = voxel_side(volume);
     TrilinearCaster voxels(volume, {scene.level});
     FormulaCaster formula(volume);
-    auto all = lanes(volume);
+    auto all = lanes(volume, {.exact = scene.exact});
     for (int index = 0; index < view_count(20); ++index) {
         Camera camera = view(volume, index);
         Picture truth = voxels.render(camera, SIZE);
-        bool hold_against_formula = scene.smooth && index < 4;
-        Picture ideal = hold_against_formula ? formula.render(camera, SIZE) : Picture{};
+        Picture ideal = index < 4 ? formula.render(camera, SIZE) : Picture{};
         for (Lane& lane : all) {
             std::string what = fmt::format("{}, {}, view {}", lane.name, scene.name, index);
             Picture seen = picture(lane.renderer.render(frame(camera, {scene.level})));
-            expect_agreement(agreement(seen, truth, JUMP_VOXELS * voxel), voxel, what);
-            if (!hold_against_formula) continue;
-            Agreement a = agreement(seen, ideal, JUMP_VOXELS * voxel);
-            EXPECT_GE(a.overlap, 0.995) << what << ", formula";
-            EXPECT_LE(a.depth_rms / voxel, 0.1) << what << ", formula";
-            EXPECT_LE(a.normal_degrees, 2) << what << ", formula";
-            EXPECT_EQ(a.holes, 0u) << what << ", formula";
+            double jump = JUMP_VOXELS * voxel;
+            expect_agreement(agreement(seen, truth, jump), voxel, 0.999, what);
+            if (index < 4)
+                expect_agreement(agreement(seen, ideal, jump), voxel, 0.99, what + ", formula");
         }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Truth,
-                         testing::Values(Scene{"sphere:64", 0.25, true}, Scene{"torus:64", 0, true},
-                                         Scene{"gyroid:64", 0, true},
-                                         Scene{"marschner-lobb:256x256x72:type=u16", 0.5, false},
-                                         Scene{"torus:64:type=u8", 0, false},
-                                         Scene{"sphere:64x64x32:spacing=1,1,2", 0.25, true},
-                                         Scene{"gyroid:96x60x96:spacing=1,1.6,1", 0, true}),
-                         [](const auto& scene) {
-                             std::string name = scene.param.name;
-                             std::replace_if(
-                                 name.begin(), name.end(), [](char c) { return !std::isalnum(c); },
-                                 '_');
-                             return name;
-                         });
+// Marschner and Lobb's ridges hold slivers thinner than the half cell of a marching step, and are
+// flat.
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Truth,
+    testing::Values(Scene{"sphere:64", 0.25}, Scene{"torus:64", 0}, Scene{"gyroid:64", 0},
+                    Scene{"marschner-lobb:320x320x90:type=u16", 0.5, /* exact= */ true},
+                    Scene{"torus:64:type=u8", 0}, Scene{"sphere:64x64x32:spacing=1,1,2", 0.25},
+                    Scene{"gyroid:96x60x96:spacing=1,1.6,1", 0}),
+    [](const auto& scene) {
+        std::string name = scene.param.name;
+        std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
+        return name;
+    });
 
 // Oblique axes, shear and mirroring: the world, not the grid, is what is seen.
 TEST_F(GpuTest, ObliqueShearedAndMirrored) {
@@ -105,7 +100,7 @@ TEST_F(GpuTest, EyeInsideTheVolume) {
         for (Lane& lane : all)
             expect_agreement(agreement(picture(lane.renderer.render(frame(camera, {0}))), truth,
                                        JUMP_VOXELS * voxel),
-                             voxel, fmt::format("{}, view {}", lane.name, index));
+                             voxel, 0.999, fmt::format("{}, view {}", lane.name, index));
     }
 }
 

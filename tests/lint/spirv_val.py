@@ -5,21 +5,28 @@ import re
 import struct
 import subprocess
 import sys
+import tempfile
 
 # SPIR-V's version word says which Vulkan the shader was compiled for (cmake/shaders.cmake).
 ENVIRONMENTS = {0x00010300: "vulkan1.1", 0x00010500: "vulkan1.2"}
 
-validator, folder = sys.argv[1:]
-headers = sorted(pathlib.Path(folder).glob("*.h"))
-failures = 0
-for header in headers:
-    words = [int(word, 16) for word in re.findall(r"\b0x[0-9a-fA-F]{8}\b", header.read_text())]
-    binary = header.with_suffix(".spv")
-    binary.write_bytes(struct.pack(f"<{len(words)}I", *words))
-    command = [validator, "--target-env", ENVIRONMENTS[words[1]], "--scalar-block-layout", str(binary)]
-    result = subprocess.run(command, capture_output=True, text=True)
+
+def is_valid(validator, name, words):
+    with tempfile.NamedTemporaryFile(suffix=".spv") as binary:
+        binary.write(struct.pack(f"<{len(words)}I", *words))
+        binary.flush()
+        command = [validator, "--target-env", ENVIRONMENTS[words[1]], "--scalar-block-layout", binary.name]
+        result = subprocess.run(command, capture_output=True, text=True)
     if result.returncode != 0:
-        failures += 1
-        print(f"{header.stem}: {result.stdout}{result.stderr}")
-print(f"{len(headers)} shaders, {failures} invalid")
-sys.exit(1 if failures or not headers else 0)
+        print(f"{name}: {result.stdout}{result.stderr}")
+    return result.returncode == 0
+
+
+validator, folder = sys.argv[1:]
+results = []
+for header in sorted(pathlib.Path(folder).glob("*.h")):
+    for name, body in re.findall(r"uint32_t (\w+)\[\] = \{([^}]*)\}", header.read_text()):
+        words = [int(word, 16) for word in re.findall(r"0x[0-9a-f]{8}", body)]
+        results.append(is_valid(validator, name, words))
+print(f"{len(results)} shaders, {results.count(False)} invalid")
+sys.exit(0 if results and all(results) else 1)

@@ -209,7 +209,7 @@ std::vector<T> noise(size_t count) {
 template <class T>
 void expect_statistics_of(VoxelType type) {
     for (const size_t count :
-         {size_t{1}, size_t{1000}, size_t{(2 << 20) + 77}}) {  // in several chunks, too
+         {size_t{1}, size_t{1000}, size_t{(1 << 20) + 77}}) {  // in several chunks, too
         Volume volume = row_of(type, noise<T>(count));
         expect_statistics(volume);
         volume.slope = -0.25;

@@ -71,6 +71,8 @@ Direct::Direct(const TechniqueContext& context) : grid_(context.grid) {
             device.info().name,
             device.info().why_not_hardware.empty() ? "mesh shaders are not enabled"
                                                    : device.info().why_not_hardware));
+    if (context.options.exact)
+        throw Error("direct: has no exact way; use --technique raymarch");
     if (context.options.rasterizer == Rasterizer::compute)
         throw Error("direct: has no compute rasterizer yet; use --rasterizer hardware, or --technique raymarch");
 
