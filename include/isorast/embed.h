@@ -32,7 +32,9 @@ struct RecordedFrame {
 };
 
 // Records one frame into `commands`, outside a render pass. `slot`, below RendererOptions::frames_in_flight,
-// names the transient resources to use: its previous use must have finished on the GPU.
+// names the transient resources to use: its previous use must have finished on the GPU. A frame of another
+// size, or the first with several isovalues or with want_depth, makes new images: then all frames recorded
+// before must have finished. At most one frame of a Renderer is recorded at a time.
 // Barriers before and after the frame are included.
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame, uint32_t slot);
 

@@ -57,10 +57,9 @@ void Renderer::State::record(gpu::Commands& commands, const Frame& frame) {
     check(frame);
     if (frame.shading == Shading::forward && !technique_->can_shade_forward())
         throw Error(fmt::format("shading: {} cannot shade forward; use gooch", options_.technique));
-    const bool several = frame.isovalues.size() > 1;
-    if (!target_.fits(frame.size, several)) {
+    if (!target_.fits(frame)) {
         for (auto& submission : submissions_) submission->wait();
-        target_.fit(device_, commands, frame.size, technique_->rasterizer() == Rasterizer::hardware, several);
+        target_.fit(device_, commands, frame, technique_->rasterizer() == Rasterizer::hardware);
     }
     commands.barrier();
     grid_.begin_frame(commands, make_frame_info(frame, placement_, grid_.stored()));
@@ -82,7 +81,7 @@ Image Renderer::State::render(const Frame& frame) {
     record(commands, frame);
     fit_readback(frame);
     commands.copy_to_buffer(target_.color, color_readback_);
-    if (frame.want_depth) commands.copy_to_buffer(shade_.distances(), depth_readback_);
+    if (frame.want_depth) commands.copy_to_buffer(target_.distances, depth_readback_);
     if (technique_->counters())
         commands.copy(*technique_->counters(), 0, counters_readback_, 0, sizeof(shared::Counters));
     submission.submit();

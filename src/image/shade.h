@@ -12,15 +12,11 @@ namespace isorast {
 class Shade {
 public:
     explicit Shade(const Grid& grid);
-    // Writes target.color (unless the technique did: Shading::forward) and, if wanted, the distances.
+    // Writes target.color (unless the technique did: Shading::forward) and, if wanted, target.distances.
     void record(gpu::Commands& commands, const Frame& frame, const Target& target);
-    // R32_SFLOAT, valid after record() with want_depth.
-    const gpu::Texture& distances() const { return distances_; }
 
 private:
-    const Grid& grid_;
     gpu::Pipeline color_, color_and_distance_, distance_;
-    gpu::Texture distances_;
 };
 
 }  // namespace isorast

@@ -7,36 +7,38 @@
 
 namespace isorast {
 
-bool Target::fits(Size wanted, bool several_surfaces) const {
-    return size == wanted && surfaces && (surfaces.extent().width == wanted.width || !several_surfaces);
+namespace {
+
+bool is_whole(const gpu::Texture& texture, Size size) {
+    return texture && texture.extent().width == size.width && texture.extent().height == size.height;
 }
 
-void Target::fit(const gpu::Device& device, gpu::Commands& commands, Size wanted, bool hardware,
-                 bool several_surfaces) {
-    if (fits(wanted, several_surfaces)) return;
-    const VkExtent3D whole{wanted.width, wanted.height, 1};
+}  // namespace
+
+bool Target::fits(const Frame& frame) const {
+    return size == frame.size && (frame.isovalues.size() <= 1 || is_whole(surfaces, size)) &&
+           (!frame.want_depth || is_whole(distances, size));
+}
+
+void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame& frame, bool hardware) {
+    size = frame.size;
+    const VkExtent3D whole{size.width, size.height, 1}, one{1, 1, 1};
     const VkImageUsageFlags always = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    const VkImageUsageFlags attachment =
-        device.has_graphics() ? VkImageUsageFlags{VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT} : 0u;
-    size = wanted;
-    color = gpu::Texture(device,
-                         {.format = VK_FORMAT_R8G8B8A8_UNORM,
-                          .extent = whole,
-                          .usage = always | attachment | VK_IMAGE_USAGE_STORAGE_BIT},
-                         "the picture");
-    depth = gpu::Texture(
-        device,
-        {.format = hardware ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R32_SFLOAT,
-         .extent = whole,
-         .usage = always | VkImageUsageFlags(hardware ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
-                                                      : VK_IMAGE_USAGE_STORAGE_BIT)},
-        "the picture's depth");
-    surfaces = gpu::Texture(device,
-                            {.format = VK_FORMAT_R32_UINT,
-                             .extent = several_surfaces ? whole : VkExtent3D{1, 1, 1},
-                             .usage = always | attachment | VK_IMAGE_USAGE_STORAGE_BIT},
-                            "the picture's surface numbers");
-    for (const gpu::Texture* texture : {&color, &depth, &surfaces}) commands.discard_to_general(*texture);
+    const VkImageUsageFlags storage = always | VK_IMAGE_USAGE_STORAGE_BIT;
+    const VkImageUsageFlags both =
+        storage | (device.has_graphics() ? VkImageUsageFlags{VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT} : 0u);
+    const VkImageUsageFlags attachment = always | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    const auto make = [&](gpu::Texture& texture, VkFormat format, VkExtent3D extent,
+                          VkImageUsageFlags usage, const char* what) {
+        texture = gpu::Texture(device, {.format = format, .extent = extent, .usage = usage}, what);
+        commands.discard_to_general(texture);
+    };
+    make(color, VK_FORMAT_R8G8B8A8_UNORM, whole, both, "the picture");
+    make(depth, hardware ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R32_SFLOAT, whole, hardware ? attachment : storage,
+         "the picture's depth");
+    make(surfaces, VK_FORMAT_R32_UINT, frame.isovalues.size() > 1 ? whole : one, both,
+         "the picture's surface numbers");
+    make(distances, VK_FORMAT_R32_SFLOAT, frame.want_depth ? whole : one, storage, "the picture's distances");
 }
 
 }  // namespace isorast

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Target: what a frame is drawn into. Techniques write depth; the shading pass turns it into colours.
 #pragma once
-#include <isorast/image.h>
+#include <isorast/renderer.h>
 
 #include "gpu/resources.h"
 
@@ -17,13 +17,16 @@ struct Target {
     Size size{0, 0};
     gpu::Texture color;     // R8G8B8A8_UNORM
     gpu::Texture depth;     // D32_SFLOAT for the hardware rasterizer, R32_SFLOAT for compute
-    gpu::Texture surfaces;  // R32_UINT: the number of the surface in each pixel; 1x1 for one surface
+    // 1x1 where a frame does not need them: the number of the surface in each pixel, R32_UINT (several
+    // surfaces), and its distance, R32_SFLOAT (Frame::want_depth).
+    gpu::Texture surfaces, distances;
 
-    // Makes what is missing or has another size. Not while a frame that uses the old images is in flight.
-    void fit(const gpu::Device& device, gpu::Commands& commands, Size wanted, bool hardware,
-             bool several_surfaces);
-    bool fits(Size wanted, bool several_surfaces) const;
-    uint64_t bytes() const { return color.bytes() + depth.bytes() + surfaces.bytes(); }
+    // Makes what is missing or too small. Not while a frame that uses the old images is in flight.
+    void fit(const gpu::Device& device, gpu::Commands& commands, const Frame& frame, bool hardware);
+    bool fits(const Frame& frame) const;
+    uint64_t bytes() const {
+        return color.bytes() + depth.bytes() + surfaces.bytes() + distances.bytes();
+    }
 };
 
 }  // namespace isorast

@@ -7,8 +7,6 @@
 #include <isorast/error.h>
 
 #include "cull_comp.h"
-#include "extract_128_mesh.h"
-#include "extract_128_task.h"
 #include "extract_forward_mesh.h"
 #include "extract_mesh.h"
 #include "extract_task.h"
