@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// isorast-bench: GPU times of whole frames and their passes, as a table and as JSON. It links the core
-// only, so that a binary built on one machine runs on another that has a Vulkan driver and little else.
+// isorast-bench: GPU times of whole frames and their passes, as a table and as JSON. It links the
+// core only, so that a binary built on one machine runs on another that has a Vulkan driver and
+// little else.
 //
 //   isorast-bench frames --sides 256,512 --types u8,u16 --fields coral,noise -o frames.json
 #include <fmt/format.h>
@@ -24,13 +25,15 @@ using Json = nlohmann::ordered_json;
 struct Settings {
     std::vector<uint32_t> sides{256};
     std::vector<std::string> types{"u8"}, fields{"coral", "noise"};
-    std::vector<std::string> ways{"direct", "direct forward", "raymarch compute", "raymarch hardware"};
+    std::vector<std::string> ways{"direct", "direct forward", "raymarch compute",
+                                  "raymarch hardware"};
     uint32_t width = 3840, height = 2160, warm_up = 10, frames = 40;
     double azimuth = 30, elevation = 20, zoom = 1;
     std::string device, output;
 };
 
-// A technique with its rasterizer, in the words of the tables: "direct forward", "raymarch compute exact".
+// A technique with its rasterizer, in the words of the tables: "direct forward", "raymarch compute
+// exact".
 struct Way {
     RendererOptions options;
     Shading shading = Shading::gooch;
@@ -41,24 +44,32 @@ Way parse_way(const std::string& words) {
     std::istringstream stream(words);
     stream >> way.options.technique;
     for (std::string word; stream >> word;) {
-        if (word == "forward") way.shading = Shading::forward;
-        else if (word == "exact") way.options.exact = true;
-        else if (const auto rasterizer = parse_rasterizer(word)) way.options.rasterizer = *rasterizer;
-        else throw Error(fmt::format("way '{}': expected forward, exact, hardware or compute, found '{}'", words, word));
+        if (word == "forward")
+            way.shading = Shading::forward;
+        else if (word == "exact")
+            way.options.exact = true;
+        else if (const auto rasterizer = parse_rasterizer(word))
+            way.options.rasterizer = *rasterizer;
+        else
+            throw Error(fmt::format(
+                "way '{}': expected forward, exact, hardware or compute, found '{}'", words, word));
     }
     return way;
 }
 
 double quantile(std::vector<double> values, double share) {
     std::ranges::sort(values);
-    return values.empty() ? 0 : values[std::min(values.size() - 1, size_t(share * double(values.size())))];
+    return values.empty()
+               ? 0
+               : values[std::min(values.size() - 1, size_t(share * double(values.size())))];
 }
 
 Json summary(const std::vector<double>& values) {
     return {{"median_ms", quantile(values, 0.5)}, {"p95_ms", quantile(values, 0.95)}};
 }
 
-// Median and 95th percentile of each pass, and of the whole frame from its first to its last timestamp.
+// Median and 95th percentile of each pass, and of the whole frame from its first to its last
+// timestamp.
 Json summarize(const std::vector<std::vector<gpu::TimedPass>>& frames) {
     std::vector<std::string> order;
     std::map<std::string, std::vector<double>> passes;
@@ -71,7 +82,8 @@ Json summarize(const std::vector<std::vector<gpu::TimedPass>>& frames) {
         totals.push_back(frame.empty() ? 0 : frame.back().end_ms);
     }
     Json json{{"frame", summary(totals)}, {"passes", Json::object()}};
-    for (const std::string& name : order) json["passes"][name] = summary(passes[name]);
+    for (const std::string& name : order)
+        json["passes"][name] = summary(passes[name]);
     return json;
 }
 
@@ -106,7 +118,9 @@ Json frames(Gpu& gpu, const Settings& settings) {
             for (const std::string& type : settings.types) {
                 const std::string name = fmt::format("{}:{}:type={}", field, side, type);
                 const Volume volume = make_procedural(name);
-                Frame frame{.isovalues = {0.5}, .camera = orbit(volume, settings.azimuth, settings.elevation, {.zoom = settings.zoom}),
+                Frame frame{.isovalues = {0.5},
+                            .camera = orbit(volume, settings.azimuth, settings.elevation,
+                                            {.zoom = settings.zoom}),
                             .size = {settings.width, settings.height}};
                 for (const std::string& words : settings.ways) {
                     const Way way = parse_way(words);
@@ -127,11 +141,14 @@ int main(int argc, char** argv) try {
     Settings settings;
     CLI::App app{"GPU times of whole frames and their passes"};
     app.require_subcommand(1);
-    auto* command = app.add_subcommand("frames", "a still picture, for each volume and way to render");
+    auto* command =
+        app.add_subcommand("frames", "a still picture, for each volume and way to render");
     command->add_option("--sides", settings.sides, "voxels a side")->delimiter(',');
     command->add_option("--types", settings.types, "u8, u16, f32")->delimiter(',');
     command->add_option("--fields", settings.fields, "formulas")->delimiter(',');
-    command->add_option("--ways", settings.ways, "e.g. 'direct,direct forward,raymarch compute exact'")->delimiter(',');
+    command
+        ->add_option("--ways", settings.ways, "e.g. 'direct,direct forward,raymarch compute exact'")
+        ->delimiter(',');
     command->add_option("--width", settings.width);
     command->add_option("--height", settings.height);
     command->add_option("--frames", settings.frames, "counted frames");
@@ -146,11 +163,13 @@ int main(int argc, char** argv) try {
     Gpu gpu({.device = settings.device});
     fmt::print("{}, {}, {}x{}, median of {} frames after {}\n", gpu.info().name, gpu.info().driver,
                settings.width, settings.height, settings.frames, settings.warm_up);
-    Json json{{"device", gpu.info().name}, {"driver", gpu.info().driver}, {"width", settings.width},
-              {"height", settings.height}, {"frames", settings.frames}, {"warm_up", settings.warm_up}};
+    Json json{{"device", gpu.info().name}, {"driver", gpu.info().driver},
+              {"width", settings.width},   {"height", settings.height},
+              {"frames", settings.frames}, {"warm_up", settings.warm_up}};
     json["command"] = [&] {
         std::string line;
-        for (int i = 0; i < argc; ++i) line += (i ? " " : "") + std::string(argv[i]);
+        for (int i = 0; i < argc; ++i)
+            line += (i ? " " : "") + std::string(argv[i]);
         return line;
     }();
     json["rows"] = frames(gpu, settings);

@@ -5,4 +5,4 @@ set -euo pipefail
 isorast=$1
 shift
 exec "$isorast" render "$(dirname "${BASH_SOURCE[0]}")/../data/brain.nii.gz" \
-    --iso 30 --azimuth 60 --elevation 15 --zoom 1.5 --size 960x720 "$@"
+    --iso 30 --azimuth 60 --elevation 15 --size 960x720 "$@"

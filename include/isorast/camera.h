@@ -15,28 +15,30 @@ using VoxelPoints = std::vector<std::array<double, 3>>;
 
 struct Camera {
     std::array<double, 3> position{0, 0, 1}, target{0, 0, 0}, up{0, 1, 0};
-    double fov_degrees = 30;  // across the shorter side of the picture, so that a fit holds for any aspect
+    double fov_degrees =
+        30;  // across the shorter side of the picture, so that a fit holds for any aspect
     bool orthographic = false;
-    double height = 1;        // orthographic only: world units across the shorter side of the picture
+    double height = 1;  // orthographic only: world units across the shorter side of the picture
 };
 
 struct OrbitOptions {
     double roll_degrees = 0;
-    double zoom = 1;          // 2 shows things twice as large
+    double zoom = 1;  // 2 shows things twice as large
     double fov_degrees = 30;
     bool orthographic = false;
     VoxelPoints shown;  // what to fit; empty: the whole volume. See Renderer::surface_hull.
 };
 
-// A camera that looks at the middle of what is shown and shows all of it, from `azimuth` degrees around
-// the up axis and `elevation` degrees above the horizon. Up is +z of the world, and azimuth 0 looks from the
-// front: from the patient's anterior (+y) in RAS, else from -y. The fit uses real
+// A camera that looks at the middle of what is shown and shows all of it, from `azimuth` degrees
+// around the up axis and `elevation` degrees above the horizon. Up is +z of the world, and azimuth
+// 0 looks from the front: from the patient's anterior (+y) in RAS, else from -y. The fit uses real
 // world positions: anisotropic spacing, oblique and sheared axes keep their aspect.
 Camera orbit(const Volume& volume, double azimuth_degrees, double elevation_degrees,
              const OrbitOptions& options = {});
 
-// "+x" "-x" "+y" "-y" "+z" "-z": seen from that side of the world; "A" "P" "L" "R" "S" "I": seen from that
-// side of the patient. Nothing for other words. Throws Error for a patient side when the space is unknown.
+// "+x" "-x" "+y" "-y" "+z" "-z": seen from that side of the world; "A" "P" "L" "R" "S" "I": seen
+// from that side of the patient. Nothing for other words. Throws Error for a patient side when the
+// space is unknown.
 std::optional<Camera> view_preset(const Volume& volume, std::string_view word,
                                   const OrbitOptions& options = {});
 

@@ -1,41 +1,46 @@
 // SPDX-License-Identifier: MIT
-// For programs that own a Vulkan device: adopt it, and record isorast frames into their command buffers.
+// For programs that own a Vulkan device: adopt it, and record isorast frames into their command
+// buffers.
 #pragma once
 #include <isorast/renderer.h>
 #include <vulkan/vulkan.h>
 
 namespace isorast {
 
-// The host's Vulkan 1.1 (or later) device. A flag says that the host has enabled that feature; what is
-// not enabled is not used, and a technique that needs it says so when it is made.
+// The host's Vulkan 1.1 (or later) device. A flag says that the host has enabled that feature; what
+// is not enabled is not used, and a technique that needs it says so when it is made.
 struct HostDevice {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;  // with compute; with graphics too for the hardware rasterizer
     uint32_t queue_family = 0;
-    bool storage_16bit = false;        // storageBuffer16BitAccess: required
-    bool nonuniform_textures = false;  // shaderSampledImageArrayNonUniformIndexing: volumes of several bricks
-    bool mesh_shaders = false;         // VK_EXT_mesh_shader with taskShader and meshShader
-    bool dynamic_rendering = false;    // Vulkan 1.3 dynamicRendering
-    bool storage_without_format = false;  // shaderStorageImageWriteWithoutFormat and ...ExtendedFormats
+    bool storage_16bit = false;  // storageBuffer16BitAccess: required
+    bool nonuniform_textures =
+        false;  // shaderSampledImageArrayNonUniformIndexing: volumes of several bricks
+    bool mesh_shaders = false;       // VK_EXT_mesh_shader with taskShader and meshShader
+    bool dynamic_rendering = false;  // Vulkan 1.3 dynamicRendering
+    bool storage_without_format =
+        false;  // shaderStorageImageWriteWithoutFormat and ...ExtendedFormats
 };
 
-// Where a recorded frame's picture will be once the command buffer has run. Images stay in GENERAL layout,
-// belong to the Renderer, and are overwritten by the next recorded frame.
+// Where a recorded frame's picture will be once the command buffer has run. Images stay in GENERAL
+// layout, belong to the Renderer, and are overwritten by the next recorded frame.
 struct RecordedFrame {
     VkImage color = VK_NULL_HANDLE;  // R8G8B8A8_UNORM, sRGB-encoded, straight alpha
     VkImageView color_view = VK_NULL_HANDLE;
-    VkImage depth = VK_NULL_HANDLE;  // reversed: 1 at the near plane, 0 at the far plane and where nothing is
+    VkImage depth =
+        VK_NULL_HANDLE;  // reversed: 1 at the near plane, 0 at the far plane and where nothing is
     VkImageView depth_view = VK_NULL_HANDLE;
     VkFormat depth_format = VK_FORMAT_UNDEFINED;
 };
 
-// Records one frame into `commands`, outside a render pass. `slot`, below RendererOptions::frames_in_flight,
-// names the transient resources to use: its previous use must have finished on the GPU. A frame of another
-// size, or the first with several isovalues or with want_depth, makes new images: then all frames recorded
-// before must have finished. At most one frame of a Renderer is recorded at a time.
-// Barriers before and after the frame are included.
-RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame, uint32_t slot);
+// Records one frame into `commands`, outside a render pass. `slot`, below
+// RendererOptions::frames_in_flight, names the transient resources to use: its previous use must
+// have finished on the GPU. A frame of another size, or the first with several isovalues or with
+// want_depth, makes new images: then all frames recorded before must have finished. At most one
+// frame of a Renderer is recorded at a time. Barriers before and after the frame are included.
+RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,
+                     uint32_t slot);
 
 }  // namespace isorast

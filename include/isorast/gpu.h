@@ -14,12 +14,12 @@ class Device;
 struct HostDevice;  // <isorast/embed.h>
 
 struct DeviceInfo {
-    std::string name, driver, kind;    // kind: "discrete GPU", "integrated GPU", "CPU", ...
+    std::string name, driver, kind;  // kind: "discrete GPU", "integrated GPU", "CPU", ...
     std::string api_version;
     uint32_t subgroup_size = 0;
-    uint64_t memory_bytes = 0;         // of the largest device-local heap
+    uint64_t memory_bytes = 0;  // of the largest device-local heap
     uint64_t max_allocation_bytes = 0;
-    uint32_t max_image_side = 0;       // voxels along one side of a 3D image
+    uint32_t max_image_side = 0;  // voxels along one side of a 3D image
     // Empty when the device can; else why it cannot, in a few words.
     std::string why_not_hardware, why_not_compute;
 };

@@ -17,18 +17,18 @@ struct Size {
 struct Image {
     Size size;
     std::vector<uint8_t> rgba;  // 4 bytes a pixel, sRGB, straight alpha; rows from the top
-    // Distance from the eye's plane to the surface along the viewing direction, world units, a value a
-    // pixel; infinity where there is no surface. Empty unless Frame::want_depth.
+    // Distance from the eye's plane to the surface along the viewing direction, world units, a
+    // value a pixel; infinity where there is no surface. Empty unless Frame::want_depth.
     std::vector<float> depth;
 
     std::array<uint8_t, 4> pixel(uint32_t x, uint32_t y) const;
 };
 
 struct Difference {
-    double maximum = 0;            // largest difference of a channel, 0 to 255
-    double root_mean_square = 0;   // over all channels, 0 to 255
-    uint64_t pixels_over = 0;      // pixels with a channel that differs by more than the tolerance
-    double share_over = 0;         // the same as a share of all pixels
+    double maximum = 0;           // largest difference of a channel, 0 to 255
+    double root_mean_square = 0;  // over all channels, 0 to 255
+    uint64_t pixels_over = 0;     // pixels with a channel that differs by more than the tolerance
+    double share_over = 0;        // the same as a share of all pixels
 };
 // Throws Error when sizes differ. `tolerance` is in channel units, 0 to 255.
 Difference compare(const Image& a, const Image& b, double tolerance = 0);
@@ -36,8 +36,8 @@ Difference compare(const Image& a, const Image& b, double tolerance = 0);
 Image difference_picture(const Image& a, const Image& b, double tolerance = 1);
 
 // PNG, 8 bits a channel, sRGB; `text` pairs become tEXt chunks. These need libpng: not in the core.
-std::vector<uint8_t> encode_png(
-    const Image& image, const std::vector<std::pair<std::string, std::string>>& text = {});
+std::vector<uint8_t> encode_png(const Image& image,
+                                const std::vector<std::pair<std::string, std::string>>& text = {});
 // The file appears whole or not at all.
 void write_png(const std::string& path, const Image& image,
                const std::vector<std::pair<std::string, std::string>>& text = {});

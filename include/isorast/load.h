@@ -15,9 +15,9 @@ struct LoadOptions {
     uint32_t time_step = 0;
 };
 
-// `path` is a file or a formula ("sphere:64"). Uncompressed voxels in native byte order are memory-mapped.
-// Throws Error: one line with the file, what was expected, what was found, and what to do.
-// Nothing is allocated that the file's own size does not justify.
+// `path` is a file or a formula ("sphere:64"). Uncompressed voxels in native byte order are
+// memory-mapped. Throws Error: one line with the file, what was expected, what was found, and what
+// to do. Nothing is allocated that the file's own size does not justify.
 Volume load_volume(const std::string& path, const LoadOptions& options = {});
 
 }  // namespace isorast

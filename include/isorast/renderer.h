@@ -24,8 +24,8 @@ struct RendererOptions {
     // One of techniques(); "auto": direct where the device has mesh shaders, else raymarch.
     std::string technique = "auto";
     Rasterizer rasterizer = Rasterizer::automatic;
-    bool exact = false;                // raymarch: solve each cell's cubic instead of stepping
-    uint32_t max_brick_side = 0;       // largest side of a 3D image in voxels; 0: what the device allows
+    bool exact = false;           // raymarch: solve each cell's cubic instead of stepping
+    uint32_t max_brick_side = 0;  // largest side of a 3D image in voxels; 0: what the device allows
     uint32_t frames_in_flight = 2;
 };
 
@@ -34,13 +34,14 @@ struct Color {
 };
 
 struct Frame {
-    std::vector<double> isovalues{};     // data units; at most MAX_SURFACES (32) opaque surfaces
-    std::vector<Color> colors{};         // one for each isovalue; the default palette fills up what is missing
+    std::vector<double> isovalues{};  // data units; at most MAX_SURFACES (32) opaque surfaces
+    std::vector<Color>
+        colors{};  // one for each isovalue; the default palette fills up what is missing
     Camera camera{};
     Size size{};
     Shading shading = Shading::gooch;
-    Color background{1, 1, 1, 1};      // alpha 0: transparent
-    bool culling = true;               // frustum culling (and occlusion culling where the technique has it)
+    Color background{1, 1, 1, 1};  // alpha 0: transparent
+    bool culling = true;  // frustum culling (and occlusion culling where the technique has it)
     bool want_depth = false;
 };
 
@@ -50,18 +51,19 @@ struct PassTime {
 };
 
 struct FrameStats {
-    std::vector<PassTime> passes;      // in the order of the frame; GPU time
-    double total_ms = 0;               // from the first to the last timestamp
+    std::vector<PassTime> passes;  // in the order of the frame; GPU time
+    double total_ms = 0;           // from the first to the last timestamp
     uint64_t blocks = 0, blocks_active = 0, blocks_drawn = 0;
-    uint64_t volume_bytes = 0;         // voxels on the GPU, brick aprons included
-    uint64_t extra_bytes = 0;          // everything else on the GPU but the frame's targets
+    uint64_t volume_bytes = 0;  // voxels on the GPU, brick aprons included
+    uint64_t extra_bytes = 0;   // everything else on the GPU but the frame's targets
     uint64_t target_bytes = 0;
     uint32_t bricks = 0;
 };
 
-// What does not fit the device, before anything is allocated: empty when all fits, else one line that
-// says what and by how much.
-std::string what_does_not_fit(const Gpu& gpu, const Volume& volume, const RendererOptions& options = {});
+// What does not fit the device, before anything is allocated: empty when all fits, else one line
+// that says what and by how much.
+std::string what_does_not_fit(const Gpu& gpu, const Volume& volume,
+                              const RendererOptions& options = {});
 
 std::vector<std::string> techniques();
 
@@ -79,8 +81,9 @@ public:
     const FrameStats& stats() const;
     // The range of the finite voxels, in data units, as found on the GPU.
     std::array<double, 2> value_range() const;
-    // Corners of the outermost blocks that the surfaces at these isovalues (data units) cross; empty when there is
-    // no surface. For cameras that fit the object and not the empty space around it: OrbitOptions::shown.
+    // Corners of the outermost blocks that the surfaces at these isovalues (data units) cross;
+    // empty when there is no surface. For cameras that fit the object and not the empty space
+    // around it: OrbitOptions::shown.
     VoxelPoints surface_hull(const std::vector<double>& isovalues) const;
     std::string technique() const;  // what "auto" became
     Rasterizer rasterizer() const;  // what `automatic` became

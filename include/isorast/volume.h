@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Volume: scalar voxels on a regular grid, where they lie in the world, and what their numbers mean.
+// Volume: scalar voxels on a regular grid, where they lie in the world, and what their numbers
+// mean.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -60,8 +61,8 @@ private:
     size_t mapping_size_ = 0;
 };
 
-// A formula in place of voxels, over [-1, 1]^3; see src/volume/field.h. It is sampled on the GPU when
-// a Renderer takes the volume, or on the CPU by sample().
+// A formula in place of voxels, over [-1, 1]^3; see src/volume/field.h. It is sampled on the GPU
+// when a Renderer takes the volume, or on the CPU by sample().
 struct Field {
     enum class Kind : uint32_t { sphere, torus, gyroid, marschner_lobb, noise, coral };
     Kind kind = Kind::sphere;
@@ -70,17 +71,17 @@ struct Field {
 };
 
 struct Volume {
-    std::string name;                       // the file or the formula, for messages
-    std::array<uint32_t, 3> dims{};         // voxels along i (fastest in memory), j, k
+    std::string name;                // the file or the formula, for messages
+    std::array<uint32_t, 3> dims{};  // voxels along i (fastest in memory), j, k
     VoxelType type = VoxelType::u8;
-    VoxelBytes bytes;                       // native byte order; empty while only `field` is set
+    VoxelBytes bytes;  // native byte order; empty while only `field` is set
     std::optional<Field> field;
     Affine affine;
     Space space = Space::unknown;
-    std::string length_units;               // of the world: "mm", "um", "m", "" when unknown
-    double slope = 1, intercept = 0;        // value = raw * slope + intercept
-    std::string value_units;                // "HU", ... "" when unknown
-    uint32_t time_steps = 1, time_step = 0; // how many the file holds, and which one this is
+    std::string length_units;                // of the world: "mm", "um", "m", "" when unknown
+    double slope = 1, intercept = 0;         // value = raw * slope + intercept
+    std::string value_units;                 // "HU", ... "" when unknown
+    uint32_t time_steps = 1, time_step = 0;  // how many the file holds, and which one this is
 
     // Products are 64-bit and checked where a Volume is made.
     uint64_t voxel_count() const { return uint64_t{dims[0]} * dims[1] * dims[2]; }
@@ -92,8 +93,9 @@ struct Volume {
 // True when `name` is spelled like a formula: "sphere:64", "noise:128:octaves=6:seed=1:type=u8",
 // "gyroid:64x64x32:spacing=1,1,2". Names: sphere torus gyroid marschner-lobb noise coral.
 bool is_procedural(std::string_view name);
-// A volume of that formula. World positions are the formula's own coordinates, [-1, 1] along the longest
-// side, unless spacing is given. Throws Error that names the bad part and lists what is allowed.
+// A volume of that formula. World positions are the formula's own coordinates, [-1, 1] along the
+// longest side, unless spacing is given. Throws Error that names the bad part and lists what is
+// allowed.
 Volume make_procedural(std::string_view name);
 // Fill `bytes` from `field` on the CPU, if not filled yet.
 void sample(Volume& volume);
@@ -107,18 +109,19 @@ struct Statistics {
     uint64_t finite = 0, not_finite = 0;
     std::vector<uint64_t> histogram;  // equal bins from minimum to maximum
 
-    // The value below which `percent` (0 to 100) of the finite voxels lie, interpolated in the histogram.
+    // The value below which `percent` (0 to 100) of the finite voxels lie, interpolated in the
+    // histogram.
     double percentile(double percent) const;
 };
 Statistics statistics(const Volume& volume, uint32_t bins = 1024);
 
-// An isovalue worth looking at first: the threshold that best separates the object from its background
-// (Otsu 1979) for measured data; the formula's own level for procedural volumes.
+// An isovalue worth looking at first: the threshold that best separates the object from its
+// background (Otsu 1979) for measured data; the formula's own level for procedural volumes.
 double suggest_isovalue(const Volume& volume, const Statistics& statistics);
 
-// "300", "200,600", "200:1000:100", "p99", "1.5sigma", "auto", and comma lists of these, in data units.
-// Sigma counts standard deviations above the mean. `statistics` is called only if a word needs it.
-// Throws Error naming the word that does not parse.
+// "300", "200,600", "200:1000:100", "p99", "1.5sigma", "auto", and comma lists of these, in data
+// units. Sigma counts standard deviations above the mean. `statistics` is called only if a word
+// needs it. Throws Error naming the word that does not parse.
 std::vector<double> parse_isovalues(std::string_view text, const Volume& volume);
 
 }  // namespace isorast

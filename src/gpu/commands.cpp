@@ -12,7 +12,7 @@ namespace isorast::gpu {
 
 namespace {
 
-constexpr uint32_t MAX_SETS = 512;    // binds in one frame; a pass and surface each need one
+constexpr uint32_t MAX_SETS = 512;     // binds in one frame; a pass and surface each need one
 constexpr uint32_t MAX_QUERIES = 512;  // two a pass
 
 }  // namespace
@@ -56,7 +56,9 @@ std::vector<TimedPass> Slot::times() const {
     const uint64_t mask = bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
     const double tick_ms = double(device_.limits().timestampPeriod) * 1e-6;
     for (size_t i = 0; i < names_.size(); ++i) {
-        const auto since_start = [&](uint64_t tick) { return double((tick - ticks[0]) & mask) * tick_ms; };
+        const auto since_start = [&](uint64_t tick) {
+            return double((tick - ticks[0]) & mask) * tick_ms;
+        };
         passes.push_back({names_[i], since_start(ticks[2 * i]), since_start(ticks[2 * i + 1])});
     }
     return passes;
@@ -108,7 +110,8 @@ void Commands::discard_to_general(const Texture& texture) {
         .image = texture.handle(),
         .subresourceRange = {texture.aspect(), 0, 1, 0, 1}};
     vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                         &barrier);
 }
 
 void Commands::update(const Buffer& buffer, uint64_t offset, const void* data, uint64_t bytes) {
@@ -126,17 +129,18 @@ void Commands::fill(const Buffer& buffer, uint32_t value) {
 }
 
 void Commands::copy_to_texture(const Buffer& from, const Texture& to, uint32_t z, uint32_t slices) {
-    const VkBufferImageCopy region{
-        .imageSubresource = {to.aspect(), 0, 0, 1},
-        .imageOffset = {0, 0, int32_t(z)},
-        .imageExtent = {to.extent().width, to.extent().height, slices}};
-    vkCmdCopyBufferToImage(commands_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+    const VkBufferImageCopy region{.imageSubresource = {to.aspect(), 0, 0, 1},
+                                   .imageOffset = {0, 0, int32_t(z)},
+                                   .imageExtent = {to.extent().width, to.extent().height, slices}};
+    vkCmdCopyBufferToImage(commands_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_GENERAL, 1,
+                           &region);
 }
 
 void Commands::copy_to_buffer(const Texture& from, const Buffer& to) {
     const VkBufferImageCopy region{.imageSubresource = {from.aspect(), 0, 0, 1},
                                    .imageExtent = from.extent()};
-    vkCmdCopyImageToBuffer(commands_, from.handle(), VK_IMAGE_LAYOUT_GENERAL, to.handle(), 1, &region);
+    vkCmdCopyImageToBuffer(commands_, from.handle(), VK_IMAGE_LAYOUT_GENERAL, to.handle(), 1,
+                           &region);
 }
 
 VkDescriptorSet Commands::allocate_set(VkDescriptorSetLayout layout) {
@@ -179,13 +183,17 @@ void Commands::push(const void* data, uint32_t bytes) {
     vkCmdPushConstants(commands_, bound_->layout(), bound_->stages(), 0, bytes, data);
 }
 
-void Commands::dispatch(uint32_t x, uint32_t y, uint32_t z) { vkCmdDispatch(commands_, x, y, z); }
+void Commands::dispatch(uint32_t x, uint32_t y, uint32_t z) {
+    vkCmdDispatch(commands_, x, y, z);
+}
 
 void Commands::dispatch_indirect(const Buffer& arguments, uint64_t offset) {
     vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
 }
 
-void Commands::draw(uint32_t vertices) { vkCmdDraw(commands_, vertices, 1, 0, 0); }
+void Commands::draw(uint32_t vertices) {
+    vkCmdDraw(commands_, vertices, 1, 0, 0);
+}
 
 void Commands::draw_mesh_tasks_indirect(const Buffer& arguments, uint64_t offset) {
     device_.functions().draw_mesh_tasks_indirect(commands_, arguments.handle(), offset, 1,
@@ -204,7 +212,8 @@ void Commands::begin_rendering(const std::vector<const Texture*>& colors, const 
             .clearValue = value};
     };
     std::vector<VkRenderingAttachmentInfo> color_infos;
-    for (const Texture* texture : colors) color_infos.push_back(attachment(*texture, {.color = color}));
+    for (const Texture* texture : colors)
+        color_infos.push_back(attachment(*texture, {.color = color}));
     const VkExtent3D size = depth->extent();
     const auto depth_info = attachment(*depth, {.depthStencil = {0, 0}});
     const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
@@ -219,17 +228,20 @@ void Commands::begin_rendering(const std::vector<const Texture*>& colors, const 
     vkCmdSetScissor(commands_, 0, 1, &info.renderArea);
 }
 
-void Commands::end_rendering() { device_.functions().end_rendering(commands_); }
+void Commands::end_rendering() {
+    device_.functions().end_rendering(commands_);
+}
 
 Submission::Submission(const Device& device) : device_(device), slot_(device) {
     const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                        .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                        .queueFamilyIndex = device.queue_family()};
     VK_CHECK(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_));
-    const VkCommandBufferAllocateInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                             .commandPool = pool_,
-                                             .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                             .commandBufferCount = 1};
+    const VkCommandBufferAllocateInfo buffer{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .commandPool = pool_,
+        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+        .commandBufferCount = 1};
     VK_CHECK(vkAllocateCommandBuffers(device.handle(), &buffer, &commands_));
     const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     VK_CHECK(vkCreateFence(device.handle(), &fence, nullptr, &fence_));
@@ -255,8 +267,8 @@ void Submission::submit() {
     const VkMemoryBarrier to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                   .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
                                   .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
-    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
-                         &to_host, 0, nullptr, 0, nullptr);
+    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+                         0, 1, &to_host, 0, nullptr, 0, nullptr);
     VK_CHECK(vkEndCommandBuffer(commands_));
     VK_CHECK(vkResetFences(device_.handle(), 1, &fence_));
     const VkSubmitInfo info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,

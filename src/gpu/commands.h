@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Recording: named and timed passes, bindings by value, one blunt barrier. Slot: what one recorded frame
-// needs until it has run (descriptors, timestamps).
+// Recording: named and timed passes, bindings by value, one blunt barrier. Slot: what one recorded
+// frame needs until it has run (descriptors, timestamps).
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -19,7 +19,7 @@ class Device;
 // A resource for a pass's binding; see Pipeline's Kind.
 struct Binding {
     Binding(const Buffer& from) : buffer(from.handle()) {}  // NOLINT(google-explicit-constructor)
-    Binding(const Texture& from) : view(from.view()) {}   // NOLINT(google-explicit-constructor)
+    Binding(const Texture& from) : view(from.view()) {}     // NOLINT(google-explicit-constructor)
     VkBuffer buffer = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
 };
@@ -85,7 +85,9 @@ public:
     void bind(const Pipeline& pipeline, std::initializer_list<Binding> bindings);
     // After bind(): push constants of the bound pipeline.
     template <class T>
-    void push(const T& constants) { push(&constants, sizeof(T)); }
+    void push(const T& constants) {
+        push(&constants, sizeof(T));
+    }
 
     void dispatch(uint32_t x, uint32_t y = 1, uint32_t z = 1);
     void dispatch_indirect(const Buffer& arguments, uint64_t offset);
@@ -93,8 +95,8 @@ public:
     void draw_mesh_tasks_indirect(const Buffer& arguments, uint64_t offset);
 
     // Rendering into attachments, cleared first (depth to 0, far) or kept.
-    void begin_rendering(const std::vector<const Texture*>& colors, const Texture* depth, bool clear,
-                         const VkClearColorValue& color = {});
+    void begin_rendering(const std::vector<const Texture*>& colors, const Texture* depth,
+                         bool clear, const VkClearColorValue& color = {});
     void end_rendering();
 
     VkCommandBuffer handle() const { return commands_; }

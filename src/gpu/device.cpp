@@ -15,22 +15,33 @@ namespace isorast::gpu {
 
 const char* result_name(VkResult result) {
     switch (result) {
-        case VK_ERROR_OUT_OF_HOST_MEMORY: return "out of host memory";
-        case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "out of device memory";
-        case VK_ERROR_INITIALIZATION_FAILED: return "initialization failed";
-        case VK_ERROR_DEVICE_LOST: return "device lost";
-        case VK_ERROR_LAYER_NOT_PRESENT: return "layer not present";
-        case VK_ERROR_EXTENSION_NOT_PRESENT: return "extension not present";
-        case VK_ERROR_FEATURE_NOT_PRESENT: return "feature not present";
-        case VK_ERROR_INCOMPATIBLE_DRIVER: return "no compatible driver";
-        case VK_ERROR_FORMAT_NOT_SUPPORTED: return "format not supported";
-        default: return "error";
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+            return "out of host memory";
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+            return "out of device memory";
+        case VK_ERROR_INITIALIZATION_FAILED:
+            return "initialization failed";
+        case VK_ERROR_DEVICE_LOST:
+            return "device lost";
+        case VK_ERROR_LAYER_NOT_PRESENT:
+            return "layer not present";
+        case VK_ERROR_EXTENSION_NOT_PRESENT:
+            return "extension not present";
+        case VK_ERROR_FEATURE_NOT_PRESENT:
+            return "feature not present";
+        case VK_ERROR_INCOMPATIBLE_DRIVER:
+            return "no compatible driver";
+        case VK_ERROR_FORMAT_NOT_SUPPORTED:
+            return "format not supported";
+        default:
+            return "error";
     }
 }
 
 void throw_vulkan_error(const char* call, VkResult result) {
     const std::string function(call, std::strcspn(call, "("));
-    throw Error(fmt::format("Vulkan: {} failed: {} ({})", function, result_name(result), int(result)));
+    throw Error(
+        fmt::format("Vulkan: {} failed: {} ({})", function, result_name(result), int(result)));
 }
 
 namespace {
@@ -80,11 +91,13 @@ VkInstance make_instance(const void* next, const std::vector<const char*>& layer
     VkInstance instance = VK_NULL_HANDLE;
     const VkResult result = vkCreateInstance(&info, nullptr, &instance);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
-        throw Error("Vulkan: no driver found; install one, e.g. the package mesa-vulkan-drivers (its "
-                    "lavapipe runs on any CPU)");
+        throw Error(
+            "Vulkan: no driver found; install one, e.g. the package mesa-vulkan-drivers (its "
+            "lavapipe runs on any CPU)");
     if (result == VK_ERROR_LAYER_NOT_PRESENT)
-        throw Error("validation: the layer VK_LAYER_KHRONOS_validation is not installed; install the "
-                    "package vulkan-validationlayers, or leave validation off");
+        throw Error(
+            "validation: the layer VK_LAYER_KHRONOS_validation is not installed; install the "
+            "package vulkan-validationlayers, or leave validation off");
     VK_CHECK(result);
     return instance;
 }
@@ -244,8 +257,10 @@ VkDeviceMemory Device::allocate(const VkMemoryRequirements& requirements,
         if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY && result != VK_ERROR_OUT_OF_HOST_MEMORY)
             VK_CHECK(result);
     }
-    throw Error(fmt::format("{}: cannot allocate {} bytes for {}; close other programs, or use a "
-                            "smaller volume or picture", info_.name, requirements.size, what));
+    throw Error(
+        fmt::format("{}: cannot allocate {} bytes for {}; close other programs, or use a "
+                    "smaller volume or picture",
+                    info_.name, requirements.size, what));
 }
 
 std::vector<std::string> Device::messages() const {
@@ -261,13 +276,18 @@ Gpu::Gpu(const GpuOptions& options) : device_(std::make_unique<gpu::Device>(opti
 Gpu::Gpu(const HostDevice& host) : device_(std::make_unique<gpu::Device>(host)) {}
 Gpu::Gpu(Gpu&&) noexcept = default;
 Gpu::~Gpu() = default;
-const DeviceInfo& Gpu::info() const { return device_->info(); }
-std::vector<std::string> Gpu::validation_messages() const { return device_->messages(); }
+const DeviceInfo& Gpu::info() const {
+    return device_->info();
+}
+std::vector<std::string> Gpu::validation_messages() const {
+    return device_->messages();
+}
 
 std::vector<DeviceInfo> list_devices() {
     const VkInstance instance = gpu::make_instance(nullptr, {}, {});
     std::vector<DeviceInfo> infos;
-    for (VkPhysicalDevice device : gpu::enumerate(instance)) infos.push_back(gpu::describe(device));
+    for (VkPhysicalDevice device : gpu::enumerate(instance))
+        infos.push_back(gpu::describe(device));
     vkDestroyInstance(instance, nullptr);
     return infos;
 }

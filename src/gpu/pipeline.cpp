@@ -36,7 +36,8 @@ private:
 // Specialization constants 0, 1, 2, ... of 4 bytes each.
 struct Specialization {
     explicit Specialization(const std::vector<uint32_t>& constants) {
-        for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, 4 * i, 4});
+        for (uint32_t i = 0; i < constants.size(); ++i)
+            entries.push_back({i, 4 * i, 4});
         info = {uint32_t(entries.size()), entries.data(), 4 * constants.size(), constants.data()};
     }
     std::vector<VkSpecializationMapEntry> entries;
@@ -56,9 +57,12 @@ VkPipelineShaderStageCreateInfo stage_info(VkShaderStageFlagBits stage, const Mo
 
 VkDescriptorType descriptor_type(Kind kind) {
     switch (kind) {
-        case Kind::buffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        case Kind::texture: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-        case Kind::image: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        case Kind::buffer:
+            return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        case Kind::texture:
+            return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+        case Kind::image:
+            return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     }
     return VK_DESCRIPTOR_TYPE_MAX_ENUM;
 }
@@ -100,7 +104,8 @@ Pipeline Pipeline::compute(const Device& device, const PipelineInfo& info,
 Pipeline Pipeline::graphics(const Device& device, const PipelineInfo& info,
                             const std::vector<Shader>& shaders, const Attachments& attachments) {
     VkShaderStageFlags stages = 0;
-    for (const Shader& shader : shaders) stages |= shader.stage;
+    for (const Shader& shader : shaders)
+        stages |= shader.stage;
     Pipeline pipeline(device, info, stages);
     pipeline.bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;
 

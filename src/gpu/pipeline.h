@@ -12,7 +12,11 @@ namespace isorast::gpu {
 
 class Device;
 
-enum class Kind : uint8_t { buffer, texture, image };  // storage buffer, sampled image, storage image
+enum class Kind : uint8_t {
+    buffer,
+    texture,
+    image
+};  // storage buffer, sampled image, storage image
 
 struct Shader {
     VkShaderStageFlagBits stage;
@@ -43,7 +47,10 @@ public:
     static Pipeline graphics(const Device& device, const PipelineInfo& info,
                              const std::vector<Shader>& shaders, const Attachments& attachments);
     Pipeline(Pipeline&& other) noexcept { swap(other); }
-    Pipeline& operator=(Pipeline&& other) noexcept { swap(other); return *this; }
+    Pipeline& operator=(Pipeline&& other) noexcept {
+        swap(other);
+        return *this;
+    }
     ~Pipeline();
 
     VkPipeline handle() const { return pipeline_; }

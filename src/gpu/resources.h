@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Buffers, images and samplers: move-only owners, each with its own memory. Images live in GENERAL layout.
+// Buffers, images and samplers: move-only owners, each with its own memory. Images live in GENERAL
+// layout.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -13,19 +14,27 @@ class Device;
 
 class Buffer {
 public:
-    enum class Memory : uint8_t { device, host };  // host: visible, coherent, mapped for its whole life
+    enum class Memory : uint8_t {
+        device,
+        host
+    };  // host: visible, coherent, mapped for its whole life
 
     Buffer() = default;
     // Usable as storage, uniform, indirect, and for transfers both ways.
     Buffer(const Device& device, uint64_t bytes, Memory memory, const char* what);
     Buffer(Buffer&& other) noexcept { swap(other); }
-    Buffer& operator=(Buffer&& other) noexcept { swap(other); return *this; }
+    Buffer& operator=(Buffer&& other) noexcept {
+        swap(other);
+        return *this;
+    }
     ~Buffer();
 
     VkBuffer handle() const { return buffer_; }
     uint64_t bytes() const { return bytes_; }
     template <class T>
-    T* data() const { return static_cast<T*>(mapped_); }
+    T* data() const {
+        return static_cast<T*>(mapped_);
+    }
     explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
 
 private:
@@ -49,7 +58,10 @@ public:
     Texture() = default;
     Texture(const Device& device, const ImageInfo& info, const char* what);
     Texture(Texture&& other) noexcept { swap(other); }
-    Texture& operator=(Texture&& other) noexcept { swap(other); return *this; }
+    Texture& operator=(Texture&& other) noexcept {
+        swap(other);
+        return *this;
+    }
     ~Texture();
 
     // The bytes that such an image needs on the device, without making one.
@@ -78,7 +90,10 @@ public:
     Sampler() = default;
     explicit Sampler(const Device& device);  // trilinear, clamped to the edge
     Sampler(Sampler&& other) noexcept { swap(other); }
-    Sampler& operator=(Sampler&& other) noexcept { swap(other); return *this; }
+    Sampler& operator=(Sampler&& other) noexcept {
+        swap(other);
+        return *this;
+    }
     ~Sampler();
     VkSampler handle() const { return sampler_; }
 

@@ -17,22 +17,30 @@ namespace {
 
 const char* kind_of(VkPhysicalDeviceType type) {
     switch (type) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_CPU: return "CPU";
-        default: return "other";
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            return "discrete GPU";
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            return "integrated GPU";
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            return "virtual GPU";
+        case VK_PHYSICAL_DEVICE_TYPE_CPU:
+            return "CPU";
+        default:
+            return "other";
     }
 }
 
 int rank_of(const DeviceInfo& info) {
-    int rank = info.kind == "discrete GPU" ? 3 : info.kind == "integrated GPU" ? 2
-             : info.kind == "virtual GPU" ? 1 : 0;
+    int rank = info.kind == "discrete GPU"     ? 3
+               : info.kind == "integrated GPU" ? 2
+               : info.kind == "virtual GPU"    ? 1
+                                               : 0;
     return 2 * rank + (info.why_not_hardware.empty() ? 1 : 0);
 }
 
 std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::ranges::transform(text, text.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
     return text;
 }
 
@@ -75,8 +83,9 @@ bool has_extension(VkPhysicalDevice physical, const char* name) {
     vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
     std::vector<VkExtensionProperties> extensions(count);
     vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data());
-    return std::ranges::any_of(
-        extensions, [&](const auto& extension) { return !std::strcmp(extension.extensionName, name); });
+    return std::ranges::any_of(extensions, [&](const auto& extension) {
+        return !std::strcmp(extension.extensionName, name);
+    });
 }
 
 Features supported_features(VkPhysicalDevice physical) {
@@ -110,9 +119,9 @@ DeviceInfo describe(VkPhysicalDevice physical) {
     DeviceInfo info{.name = basic.deviceName,
                     .kind = kind_of(basic.deviceType),
                     .max_image_side = basic.limits.maxImageDimension3D};
-    info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(basic.apiVersion),
-                                   VK_API_VERSION_MINOR(basic.apiVersion),
-                                   VK_API_VERSION_PATCH(basic.apiVersion));
+    info.api_version =
+        fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(basic.apiVersion),
+                    VK_API_VERSION_MINOR(basic.apiVersion), VK_API_VERSION_PATCH(basic.apiVersion));
     if (basic.apiVersion < VK_API_VERSION_1_1) {
         info.why_not_compute = info.why_not_hardware = "Vulkan " + info.api_version + ", needs 1.1";
         return info;
@@ -120,8 +129,8 @@ DeviceInfo describe(VkPhysicalDevice physical) {
     VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
     VkPhysicalDeviceMaintenance3Properties limits{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
-    VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
-                                                &limits};
+    VkPhysicalDeviceSubgroupProperties subgroup{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, &limits};
     if (basic.apiVersion >= VK_API_VERSION_1_2) limits.pNext = &driver;
     VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroup};
     vkGetPhysicalDeviceProperties2(physical, &all);
@@ -136,14 +145,20 @@ DeviceInfo describe(VkPhysicalDevice physical) {
 
     const Features features = supported_features(physical);
     const auto queue = choose_queue(physical);
-    if (!queue) info.why_not_compute = "no compute queue";
-    else if (!features.storage_16bit) info.why_not_compute = "no 16-bit storage buffers";
+    if (!queue)
+        info.why_not_compute = "no compute queue";
+    else if (!features.storage_16bit)
+        info.why_not_compute = "no 16-bit storage buffers";
     else if (basic.limits.maxPerStageDescriptorSampledImages < 80)
         info.why_not_compute = "fewer than 80 textures in a shader";
-    if (!info.why_not_compute.empty()) info.why_not_hardware = info.why_not_compute;
-    else if (!queue->graphics) info.why_not_hardware = "no graphics queue";
-    else if (!features.mesh_shaders) info.why_not_hardware = "no mesh shaders (VK_EXT_mesh_shader)";
-    else if (!features.dynamic_rendering) info.why_not_hardware = "no dynamic rendering (Vulkan 1.3)";
+    if (!info.why_not_compute.empty())
+        info.why_not_hardware = info.why_not_compute;
+    else if (!queue->graphics)
+        info.why_not_hardware = "no graphics queue";
+    else if (!features.mesh_shaders)
+        info.why_not_hardware = "no mesh shaders (VK_EXT_mesh_shader)";
+    else if (!features.dynamic_rendering)
+        info.why_not_hardware = "no dynamic rendering (Vulkan 1.3)";
     return info;
 }
 
@@ -158,10 +173,12 @@ std::vector<VkPhysicalDevice> enumerate(VkInstance instance) {
 VkPhysicalDevice select(VkInstance instance, const std::string& wanted) {
     const auto devices = enumerate(instance);
     if (devices.empty())
-        throw Error("Vulkan: no device found; install a driver, e.g. the package mesa-vulkan-drivers "
-                    "(its lavapipe runs on any CPU)");
+        throw Error(
+            "Vulkan: no device found; install a driver, e.g. the package mesa-vulkan-drivers "
+            "(its lavapipe runs on any CPU)");
     std::vector<DeviceInfo> infos;
-    for (VkPhysicalDevice device : devices) infos.push_back(describe(device));
+    for (VkPhysicalDevice device : devices)
+        infos.push_back(describe(device));
     int best = -1;
     for (size_t i = 0; i < infos.size(); ++i) {
         if (!matches(infos[i], i, wanted)) continue;

@@ -11,9 +11,13 @@ namespace isorast {
 
 namespace {
 
-glm::uvec3 divide_up(glm::uvec3 a, glm::uvec3 b) { return (a + b - 1u) / b; }
+glm::uvec3 divide_up(glm::uvec3 a, glm::uvec3 b) {
+    return (a + b - 1u) / b;
+}
 
-uint64_t product(glm::uvec3 v) { return uint64_t{v.x} * v.y * v.z; }
+uint64_t product(glm::uvec3 v) {
+    return uint64_t{v.x} * v.y * v.z;
+}
 
 }  // namespace
 
@@ -35,7 +39,8 @@ BrickPlan plan_bricks(glm::uvec3 voxels, uint32_t voxel_bytes, uint32_t max_side
     const uint32_t apron = 3;  // a voxel below, the far face, a voxel above
     const uint32_t least = shared::BLOCK + apron;
     if (max_side < least)
-        throw Error(fmt::format("bricks: expected a side of at least {} voxels, found {}", least, max_side));
+        throw Error(fmt::format("bricks: expected a side of at least {} voxels, found {}", least,
+                                max_side));
 
     const glm::uvec3 cells = glm::max(voxels, 2u) - 1u;
     const glm::uvec3 longest = glm::uvec3((max_side - apron) / shared::BLOCK * shared::BLOCK);

@@ -23,16 +23,19 @@ using shared::uvec4;
 
 constexpr uint64_t STAGING_BYTES = 64u << 20;
 
-glm::uvec3 divide_up(glm::uvec3 a, glm::uvec3 b) { return (a + b - 1u) / b; }
+glm::uvec3 divide_up(glm::uvec3 a, glm::uvec3 b) {
+    return (a + b - 1u) / b;
+}
 
-uint32_t product(glm::uvec3 v) { return v.x * v.y * v.z; }
+uint32_t product(glm::uvec3 v) {
+    return v.x * v.y * v.z;
+}
 
 shared::GridInfo make_info(const BrickPlan& plan) {
     shared::GridInfo info{};
     const glm::uvec3 cells = glm::max(plan.voxels, 1u) - 1u;
     glm::uvec3 nodes = glm::max(divide_up(cells, glm::uvec3(shared::BLOCK)), glm::uvec3(1));
-    const glm::uvec3 groups =
-        divide_up(nodes, {shared::GROUP_X, shared::GROUP_Y, shared::GROUP_Z});
+    const glm::uvec3 groups = divide_up(nodes, {shared::GROUP_X, shared::GROUP_Y, shared::GROUP_Z});
     info.voxels = uvec4(plan.voxels, 0);
     info.blocks = uvec4(nodes, product(nodes));
     info.groups = uvec4(groups, product(groups));
@@ -48,7 +51,8 @@ shared::GridInfo make_info(const BrickPlan& plan) {
 
 uint64_t minmax_bytes(const shared::GridInfo& info, const Stored& stored) {
     // Two values a node, up to the root; whole words.
-    return ((uint64_t{info.levels[info.bricks.w - 1].w} + 1) * 2 * stored.bytes() + 3) & ~uint64_t{3};
+    return ((uint64_t{info.levels[info.bricks.w - 1].w} + 1) * 2 * stored.bytes() + 3) &
+           ~uint64_t{3};
 }
 
 gpu::ImageInfo brick_image(const BrickPlan& plan, uint32_t brick, VkFormat format, bool written) {
@@ -98,15 +102,18 @@ Grid::Grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_s
     : device_(device), stored_(stored_as(volume)), sampler_(device) {
     plan_ = plan_for(device, volume, stored_, max_brick_side);
     if (plan_.count() > shared::MAX_BRICKS)
-        throw Error(fmt::format("{}: needs {} bricks of at most {} voxels a side, at most {} fit; use a "
-                                "device with larger 3D images, or a smaller volume",
-                                volume.name, plan_.count(),
-                                max_brick_side ? max_brick_side : device.limits().maxImageDimension3D,
-                                shared::MAX_BRICKS));
+        throw Error(
+            fmt::format("{}: needs {} bricks of at most {} voxels a side, at most {} fit; use a "
+                        "device with larger 3D images, or a smaller volume",
+                        volume.name, plan_.count(),
+                        max_brick_side ? max_brick_side : device.limits().maxImageDimension3D,
+                        shared::MAX_BRICKS));
     if (!plan_.one() && !device.features().nonuniform_textures)
-        throw Error(fmt::format("{}: does not fit one 3D image of {}, which cannot index several "
-                                "(shaderSampledImageArrayNonUniformIndexing); use another device or a "
-                                "smaller volume", volume.name, device.info().name));
+        throw Error(
+            fmt::format("{}: does not fit one 3D image of {}, which cannot index several "
+                        "(shaderSampledImageArrayNonUniformIndexing); use another device or a "
+                        "smaller volume",
+                        volume.name, device.info().name));
     info_ = make_info(plan_);
     make_scene_layout();
     using Memory = gpu::Buffer::Memory;
@@ -116,16 +123,21 @@ Grid::Grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_s
         gpu::Buffer(device, sizeof(shared::FrameInfo), Memory::device, "the frame's description");
     minmax_blocks_ = gpu::Pipeline::compute(device, pipeline_info("minmax blocks", {}, 0),
                                             pick(minmax_blocks_comp, minmax_blocks_comp_bricked));
-    minmax_level_ = gpu::Pipeline::compute(device, pipeline_info("minmax level", {}, 4),
-                                           minmax_level_comp);
-    const bool on_gpu = volume.field && volume.bytes.span().empty() && can_sample_on_gpu(device, stored_);
+    minmax_level_ =
+        gpu::Pipeline::compute(device, pipeline_info("minmax level", {}, 4), minmax_level_comp);
+    const bool on_gpu =
+        volume.field && volume.bytes.span().empty() && can_sample_on_gpu(device, stored_);
     for (uint32_t i = 0; i < plan_.count(); ++i)
         textures_.emplace_back(device, brick_image(plan_, i, stored_.format, on_gpu), "the volume");
     if (on_gpu) {
         sample_on_gpu(volume);
     } else if (volume.bytes.span().empty()) {
-        Volume sampled{.name = volume.name, .dims = volume.dims, .type = volume.type,
-                       .field = volume.field, .affine = volume.affine, .slope = volume.slope,
+        Volume sampled{.name = volume.name,
+                       .dims = volume.dims,
+                       .type = volume.type,
+                       .field = volume.field,
+                       .affine = volume.affine,
+                       .slope = volume.slope,
                        .intercept = volume.intercept};
         sample(sampled);
         upload(sampled);
@@ -135,11 +147,14 @@ Grid::Grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_s
     find_range();
 }
 
-Grid::~Grid() { vkDestroyDescriptorSetLayout(device_.handle(), scene_layout_, nullptr); }
+Grid::~Grid() {
+    vkDestroyDescriptorSetLayout(device_.handle(), scene_layout_, nullptr);
+}
 
 uint64_t Grid::volume_bytes() const {
     uint64_t bytes = 0;
-    for (const auto& texture : textures_) bytes += texture.bytes();
+    for (const auto& texture : textures_)
+        bytes += texture.bytes();
     return bytes;
 }
 
@@ -163,12 +178,16 @@ gpu::PipelineInfo Grid::pipeline_info(const char* name, std::vector<gpu::Kind> b
 void Grid::make_scene_layout() {
     const VkShaderStageFlags all = VK_SHADER_STAGE_ALL;
     const std::array bindings{
-        VkDescriptorSetLayoutBinding{shared::BIND_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, nullptr},
-        VkDescriptorSetLayoutBinding{shared::BIND_GRID, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, nullptr},
+        VkDescriptorSetLayoutBinding{shared::BIND_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all,
+                                     nullptr},
+        VkDescriptorSetLayoutBinding{shared::BIND_GRID, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all,
+                                     nullptr},
         VkDescriptorSetLayoutBinding{shared::BIND_BRICKS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
                                      shared::MAX_BRICKS, all, nullptr},
-        VkDescriptorSetLayoutBinding{shared::BIND_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLER, 1, all, nullptr},
-        VkDescriptorSetLayoutBinding{shared::BIND_MINMAX, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, all, nullptr}};
+        VkDescriptorSetLayoutBinding{shared::BIND_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLER, 1, all,
+                                     nullptr},
+        VkDescriptorSetLayoutBinding{shared::BIND_MINMAX, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, all,
+                                     nullptr}};
     const VkDescriptorSetLayoutCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = uint32_t(bindings.size()),
@@ -190,7 +209,8 @@ void Grid::begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) 
         images[i] = {VK_NULL_HANDLE, textures_[i < textures_.size() ? i : 0].view(),
                      VK_IMAGE_LAYOUT_GENERAL};
     const auto write = [&](uint32_t binding, uint32_t count, VkDescriptorType type,
-                           const VkDescriptorBufferInfo* buffer, const VkDescriptorImageInfo* image) {
+                           const VkDescriptorBufferInfo* buffer,
+                           const VkDescriptorImageInfo* image) {
         return VkWriteDescriptorSet{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                     .dstSet = set,
                                     .dstBinding = binding,
@@ -202,7 +222,8 @@ void Grid::begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) 
     const std::array writes{
         write(shared::BIND_FRAME, 1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, &uniforms[0], nullptr),
         write(shared::BIND_GRID, 1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, &uniforms[1], nullptr),
-        write(shared::BIND_BRICKS, shared::MAX_BRICKS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, nullptr, images.data()),
+        write(shared::BIND_BRICKS, shared::MAX_BRICKS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, nullptr,
+              images.data()),
         write(shared::BIND_SAMPLER, 1, VK_DESCRIPTOR_TYPE_SAMPLER, nullptr, &sampler),
         write(shared::BIND_MINMAX, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, &minmax, nullptr)};
     vkUpdateDescriptorSets(device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
@@ -227,20 +248,23 @@ void Grid::upload(const Volume& volume) {
     const uint64_t all = slice * plan_.extent(0).z;
     gpu::Buffer staging(device_, std::max(slice, std::min(all, STAGING_BYTES)),
                         gpu::Buffer::Memory::host, "uploading");
-    for (uint32_t brick = 0; brick < plan_.count(); ++brick) upload_brick(volume, brick, staging);
+    for (uint32_t brick = 0; brick < plan_.count(); ++brick)
+        upload_brick(volume, brick, staging);
 }
 
 void Grid::upload_brick(const Volume& volume, uint32_t brick, gpu::Buffer& staging) {
     const glm::uvec3 origin = plan_.origin(brick), extent = plan_.extent(brick);
     const uint64_t row_bytes = uint64_t{extent.x} * stored_.bytes();
-    const auto slices_at_once = uint32_t(std::min<uint64_t>(staging.bytes() / (row_bytes * extent.y), extent.z));
+    const auto slices_at_once =
+        uint32_t(std::min<uint64_t>(staging.bytes() / (row_bytes * extent.y), extent.z));
     for (uint32_t z = 0; z < extent.z; z += slices_at_once) {
         const uint32_t slices = std::min(slices_at_once, extent.z - z);
         std::byte* out = staging.data<std::byte>();
         for (uint32_t k = z; k < z + slices; ++k)
             for (uint32_t j = 0; j < extent.y; ++j, out += row_bytes) {
                 const uint64_t row = uint64_t{origin.z + k} * volume.dims[1] + origin.y + j;
-                store_voxels(volume, stored_, row * volume.dims[0] + origin.x, extent.x, out, range_);
+                store_voxels(volume, stored_, row * volume.dims[0] + origin.x, extent.x, out,
+                             range_);
             }
         gpu::run_once(device_, [&](gpu::Commands& commands) {
             if (z == 0) commands.discard_to_general(textures_[brick]);
@@ -258,7 +282,8 @@ void Grid::sample_on_gpu(const Volume& volume) {
         device_, {"sample field", scene_layout_, {gpu::Kind::image}, sizeof(Push), {stored_.bits}},
         sample_field_comp);
     gpu::run_once(device_, [&](gpu::Commands& commands) {
-        for (uint32_t i = 0; i < plan_.count(); ++i) commands.discard_to_general(textures_[i]);
+        for (uint32_t i = 0; i < plan_.count(); ++i)
+            commands.discard_to_general(textures_[i]);
         begin_frame(commands, {});
         for (uint32_t i = 0; i < plan_.count(); ++i) {
             const glm::uvec3 groups = divide_up(plan_.extent(i), glm::uvec3(8, 8, 1));
@@ -286,9 +311,12 @@ std::vector<std::array<float, 2>> Grid::read_level(uint32_t level) const {
         for (size_t i = 0; i < ranges.size(); ++i)
             ranges[i] = {float(values[2 * i]), float(values[2 * i + 1])};
     };
-    if (stored_.bits == 8) read(uint8_t{});
-    else if (stored_.bits == 16) read(uint16_t{});
-    else read(float{});
+    if (stored_.bits == 8)
+        read(uint8_t{});
+    else if (stored_.bits == 16)
+        read(uint16_t{});
+    else
+        read(float{});
     return ranges;
 }
 
@@ -298,8 +326,8 @@ void Grid::find_range() {
         begin_frame(commands, {});
         build_minmax(commands);
     });
-    // The root of the pyramid holds the range, except that floats' least value may stand for voxels that
-    // are not finite: then the range is what the upload saw.
+    // The root of the pyramid holds the range, except that floats' least value may stand for voxels
+    // that are not finite: then the range is what the upload saw.
     if (range_.least > range_.greatest) {
         const auto [least, greatest] = read_level(info_.bricks.w - 1).front();
         if (greatest != NOT_FINITE) range_ = {least, greatest};
@@ -313,7 +341,8 @@ void Grid::find_range() {
 VoxelPoints Grid::crossed_hull(const std::vector<float>& isovalues) const {
     // The finest level with at most 2^18 nodes: enough for a camera, and quick to read.
     uint32_t level = 0;
-    while (product(info_.levels[level]) > 1u << 18) ++level;
+    while (product(info_.levels[level]) > 1u << 18)
+        ++level;
     const auto ranges = read_level(level);
     const glm::uvec3 nodes = info_.levels[level];
     const glm::dvec3 side(shared::BLOCK << level), last = glm::dvec3(info_.voxels) - 1.0;
@@ -322,13 +351,15 @@ VoxelPoints Grid::crossed_hull(const std::vector<float>& isovalues) const {
         uint32_t first = nodes.x, end = 0;
         for (uint32_t x = 0; x < nodes.x; ++x) {
             const auto& [low, high] = ranges[row * nodes.x + x];
-            if (std::ranges::none_of(isovalues, [&](float iso) { return low < iso && high >= iso; }))
+            if (std::ranges::none_of(isovalues,
+                                     [&](float iso) { return low < iso && high >= iso; }))
                 continue;
             first = std::min(first, x);
             end = x + 1;
         }
         for (int c = 0; c < 8 && end > 0; ++c) {
-            const glm::uvec3 corner(c & 1 ? end : first, row % nodes.y + (c >> 1 & 1), row / nodes.y + (c >> 2));
+            const glm::uvec3 corner(c & 1 ? end : first, row % nodes.y + (c >> 1 & 1),
+                                    row / nodes.y + (c >> 2));
             const glm::dvec3 p = glm::min(glm::dvec3(corner) * side, last);
             points.push_back({p.x, p.y, p.z});
         }

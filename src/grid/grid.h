@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Grid: a volume resident on the GPU as 3D textures (bricks), and the min-max of its blocks with a pyramid
-// up to the root (Kreskowski 2022, section 3.3). It also owns descriptor set 0, which every pass sees.
+// Grid: a volume resident on the GPU as 3D textures (bricks), and the min-max of its blocks with a
+// pyramid up to the root (Kreskowski 2022, section 3.3). It also owns descriptor set 0, which every
+// pass sees.
 #pragma once
 #include <isorast/camera.h>
 #include <isorast/volume.h>
@@ -39,16 +40,18 @@ public:
     uint64_t volume_bytes() const;
     uint64_t extra_bytes() const;
     std::array<double, 2> value_range() const;  // data units; NaN when no voxel is finite
-    // Corners of the first and last block of each row of blocks along x that these isovalues (stored
-    // units) cross.
+    // Corners of the first and last block of each row of blocks along x that these isovalues
+    // (stored units) cross.
     VoxelPoints crossed_hull(const std::vector<float>& isovalues) const;
 
     VkDescriptorSetLayout scene_layout() const { return scene_layout_; }
-    // Pipelines start from this: set 0's layout and the constant that scene.glsl wants, then `more`.
+    // Pipelines start from this: set 0's layout and the constant that scene.glsl wants, then
+    // `more`.
     gpu::PipelineInfo pipeline_info(const char* name, std::vector<gpu::Kind> bindings,
                                     uint32_t push_bytes, std::vector<uint32_t> more = {}) const;
     // Every shader that reads voxels comes in two: for one brick, and for several.
-    std::span<const uint32_t> pick(std::span<const uint32_t> one, std::span<const uint32_t> several) const {
+    std::span<const uint32_t> pick(std::span<const uint32_t> one,
+                                   std::span<const uint32_t> several) const {
         return plan_.one() ? one : several;
     }
     // Makes set 0 and gives it to the commands' passes; `frame` becomes the frame's uniform block.

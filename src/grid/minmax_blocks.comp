@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: one block. Thread: a share of its 9^3 voxels. Out: the block's min-max, apron included, as
-// node of level 0 (Kreskowski 2022, section 3.3).
+// Workgroup: one block. Thread: a share of its 9^3 voxels. Out: the block's min-max, apron
+// included, as node of level 0 (Kreskowski 2022, section 3.3).
 #define SCENE_WRITES_MINMAX
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 4^3 nodes of one level of the pyramid. Thread: one node. Out: the min-max of its up to eight
-// children.
+// Workgroup: 4^3 nodes of one level of the pyramid. Thread: one node. Out: the min-max of its up to
+// eight children.
 #define SCENE_WRITES_MINMAX
 #include "shaders/scene.glsl"
 #include "grid/store_node.glsl"

@@ -16,7 +16,8 @@ layout(push_constant) uniform Push {
 void main() {
     const uvec3 texel = gl_GlobalInvocationID;
     if (any(greaterThanEqual(ivec3(texel), imageSize(brick)))) return;
-    const float value = field_sample(sampling, texel.x + origin[0], texel.y + origin[1], texel.z + origin[2]);
-    const float stored = VOXEL_BITS == 32 ? value : float(field_raw(sampling, value)) / sampling.raw_maximum;
-    imageStore(brick, ivec3(texel), vec4(stored));
+    const uvec3 voxel = texel + uvec3(origin[0], origin[1], origin[2]);
+    float value = field_sample(sampling, voxel.x, voxel.y, voxel.z);
+    if (VOXEL_BITS != 32) value = float(field_raw(sampling, value)) / sampling.raw_maximum;
+    imageStore(brick, ivec3(texel), vec4(value));
 }

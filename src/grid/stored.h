@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stored values: what the GPU holds in place of raw voxels. The order of data values is always kept: a
-// greater stored value is a greater data value, also when the slope is negative.
+// Stored values: what the GPU holds in place of raw voxels. The order of data values is always
+// kept: a greater stored value is a greater data value, also when the slope is negative.
 #pragma once
 #include <isorast/volume.h>
 #include <vulkan/vulkan.h>

@@ -83,7 +83,8 @@ Camera look_from(const Volume& volume, const dvec3& eye, const dvec3& up_without
     double distance = 0, half_height = 0;
     for (const dvec3& point : points) {
         const dvec3 p = point - middle;
-        const double side = std::max({std::abs(glm::dot(p, right)), std::abs(glm::dot(p, up)), least});
+        const double side =
+            std::max({std::abs(glm::dot(p, right)), std::abs(glm::dot(p, up)), least});
         half_height = std::max(half_height, side / FILL);
         distance = std::max(distance, side / (FILL * slope) + glm::dot(p, eye));
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The words for the renderer's choices: the same in C++, on the command line and in pictures' metadata.
+// The words for the renderer's choices: the same in C++, on the command line and in pictures'
+// metadata.
 #include <isorast/renderer.h>
 
 #include <array>
@@ -9,7 +10,8 @@ namespace isorast {
 namespace {
 
 constexpr std::array<std::string_view, 3> RASTERIZERS{"auto", "hardware", "compute"};
-constexpr std::array<std::string_view, 6> SHADINGS{"gooch", "phong", "normals", "depth", "blocks", "forward"};
+constexpr std::array<std::string_view, 6> SHADINGS{"gooch", "phong",  "normals",
+                                                   "depth", "blocks", "forward"};
 
 template <class Enum, size_t N>
 std::optional<Enum> parse(const std::array<std::string_view, N>& words, std::string_view word) {
@@ -20,9 +22,17 @@ std::optional<Enum> parse(const std::array<std::string_view, N>& words, std::str
 
 }  // namespace
 
-std::string_view name_of(Rasterizer rasterizer) { return RASTERIZERS[size_t(rasterizer)]; }
-std::string_view name_of(Shading shading) { return SHADINGS[size_t(shading)]; }
-std::optional<Rasterizer> parse_rasterizer(std::string_view word) { return parse<Rasterizer>(RASTERIZERS, word); }
-std::optional<Shading> parse_shading(std::string_view word) { return parse<Shading>(SHADINGS, word); }
+std::string_view name_of(Rasterizer rasterizer) {
+    return RASTERIZERS[size_t(rasterizer)];
+}
+std::string_view name_of(Shading shading) {
+    return SHADINGS[size_t(shading)];
+}
+std::optional<Rasterizer> parse_rasterizer(std::string_view word) {
+    return parse<Rasterizer>(RASTERIZERS, word);
+}
+std::optional<Shading> parse_shading(std::string_view word) {
+    return parse<Shading>(SHADINGS, word);
+}
 
 }  // namespace isorast

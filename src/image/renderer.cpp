@@ -15,7 +15,8 @@ namespace {
 
 // "auto" becomes what the device can do.
 RendererOptions resolved(const Gpu& gpu, RendererOptions options) {
-    const bool direct = gpu.info().why_not_hardware.empty() && gpu.device().features().mesh_shaders &&
+    const bool direct = gpu.info().why_not_hardware.empty() &&
+                        gpu.device().features().mesh_shaders &&
                         options.rasterizer != Rasterizer::compute && !options.exact;
     if (options.technique == "auto") options.technique = direct ? "direct" : "raymarch";
     return options;
@@ -27,7 +28,8 @@ std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
         if (entry.name == context.options.technique) return entry.make(context);
         known += (known.empty() ? "" : ", ") + entry.name;
     }
-    throw Error(fmt::format("technique: expected one of {}, found '{}'", known, context.options.technique));
+    throw Error(
+        fmt::format("technique: expected one of {}, found '{}'", known, context.options.technique));
 }
 
 const Volume& checked(const Volume& volume) {
@@ -46,11 +48,13 @@ Renderer::State::State(Gpu& gpu, const Volume& volume, const RendererOptions& op
       shade_(grid_) {
     for (uint32_t i = 0; i < std::max(options.frames_in_flight, 1u); ++i)
         submissions_.push_back(std::make_unique<gpu::Submission>(device_));
-    counters_readback_ = gpu::Buffer(device_, sizeof(shared::Counters), gpu::Buffer::Memory::host, "counters");
+    counters_readback_ =
+        gpu::Buffer(device_, sizeof(shared::Counters), gpu::Buffer::Memory::host, "counters");
 }
 
 Renderer::State::~State() {
-    for (auto& submission : submissions_) submission->wait();
+    for (auto& submission : submissions_)
+        submission->wait();
 }
 
 void Renderer::State::record(gpu::Commands& commands, const Frame& frame) {
@@ -58,14 +62,16 @@ void Renderer::State::record(gpu::Commands& commands, const Frame& frame) {
     if (frame.shading == Shading::forward && !technique_->can_shade_forward())
         throw Error(fmt::format("shading: {} cannot shade forward; use gooch", options_.technique));
     if (!target_.fits(frame)) {
-        for (auto& submission : submissions_) submission->wait();
+        for (auto& submission : submissions_)
+            submission->wait();
         target_.fit(device_, commands, frame, technique_->rasterizer() == Rasterizer::hardware);
     }
     commands.barrier();
     grid_.begin_frame(commands, make_frame_info(frame, placement_, grid_.stored()));
 
     std::vector<float> isovalues;
-    for (double isovalue : frame.isovalues) isovalues.push_back(grid_.stored().from_value(isovalue));
+    for (double isovalue : frame.isovalues)
+        isovalues.push_back(grid_.stored().from_value(isovalue));
     if (!is_prepared_ || isovalues != prepared_) {
         technique_->prepare(commands, isovalues);
         prepared_ = isovalues;
@@ -105,23 +111,26 @@ std::vector<std::vector<gpu::TimedPass>> Renderer::State::run(const std::vector<
     return times;
 }
 
-RecordedFrame Renderer::State::record_for_host(VkCommandBuffer handle, const Frame& frame, uint32_t slot) {
+RecordedFrame Renderer::State::record_for_host(VkCommandBuffer handle, const Frame& frame,
+                                               uint32_t slot) {
     if (slot >= submissions_.size())
         throw Error(fmt::format("record: expected a slot below {} (frames_in_flight), found {}",
                                 submissions_.size(), slot));
-    while (host_slots_.size() <= slot) host_slots_.push_back(std::make_unique<gpu::Slot>(device_));
+    while (host_slots_.size() <= slot)
+        host_slots_.push_back(std::make_unique<gpu::Slot>(device_));
     host_slots_[slot]->reset();
     gpu::Commands commands(device_, handle, *host_slots_[slot]);
     record(commands, frame);
-    return {target_.color.handle(), target_.color.view(), target_.depth.handle(), target_.depth.view(),
-            target_.depth.format()};
+    return {target_.color.handle(), target_.color.view(), target_.depth.handle(),
+            target_.depth.view(), target_.depth.format()};
 }
 
 void Renderer::State::fit_readback(const Frame& frame) {
     const uint64_t bytes = uint64_t{4} * frame.size.width * frame.size.height;
     const auto fit = [&](gpu::Buffer& buffer) {
         if (buffer.bytes() != bytes)
-            buffer = gpu::Buffer(device_, bytes, gpu::Buffer::Memory::host, "reading the picture back");
+            buffer =
+                gpu::Buffer(device_, bytes, gpu::Buffer::Memory::host, "reading the picture back");
     };
     fit(color_readback_);
     if (frame.want_depth) fit(depth_readback_);
@@ -165,38 +174,56 @@ Renderer::Renderer(Gpu& gpu, const Volume& volume, const RendererOptions& option
     : state_(std::make_unique<State>(gpu, volume, options)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
-Image Renderer::render(const Frame& frame) { return state_->render(frame); }
-const FrameStats& Renderer::stats() const { return state_->stats(); }
-std::array<double, 2> Renderer::value_range() const { return state_->grid().value_range(); }
+Image Renderer::render(const Frame& frame) {
+    return state_->render(frame);
+}
+const FrameStats& Renderer::stats() const {
+    return state_->stats();
+}
+std::array<double, 2> Renderer::value_range() const {
+    return state_->grid().value_range();
+}
 VoxelPoints Renderer::surface_hull(const std::vector<double>& isovalues) const {
     std::vector<float> stored;
-    for (double isovalue : isovalues) stored.push_back(state_->grid().stored().from_value(isovalue));
+    for (double isovalue : isovalues)
+        stored.push_back(state_->grid().stored().from_value(isovalue));
     return state_->grid().crossed_hull(stored);
 }
-std::string Renderer::technique() const { return state_->options().technique; }
-Rasterizer Renderer::rasterizer() const { return state_->technique().rasterizer(); }
+std::string Renderer::technique() const {
+    return state_->options().technique;
+}
+Rasterizer Renderer::rasterizer() const {
+    return state_->technique().rasterizer();
+}
 
-RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame, uint32_t slot) {
+RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,
+                     uint32_t slot) {
     return renderer.state().record_for_host(commands, frame, slot);
 }
 
 std::vector<std::string> techniques() {
     std::vector<std::string> names;
-    for (const TechniqueEntry& entry : technique_registry()) names.push_back(entry.name);
+    for (const TechniqueEntry& entry : technique_registry())
+        names.push_back(entry.name);
     return names;
 }
 
-std::string what_does_not_fit(const Gpu& gpu, const Volume& volume, const RendererOptions& options) {
+std::string what_does_not_fit(const Gpu& gpu, const Volume& volume,
+                              const RendererOptions& options) {
     const gpu::Device& device = gpu.device();
     const GridPlan plan = plan_grid(device, volume, options.max_brick_side);
     if (plan.bricks.count() > shared::MAX_BRICKS)
-        return fmt::format("{}: needs {} bricks on {}, {} more than fit", volume.name, plan.bricks.count(),
-                           device.info().name, plan.bricks.count() - shared::MAX_BRICKS);
-    const uint64_t needed = plan.volume_bytes + 2 * plan.minmax_bytes, has = device.info().memory_bytes;
+        return fmt::format("{}: needs {} bricks on {}, {} more than fit", volume.name,
+                           plan.bricks.count(), device.info().name,
+                           plan.bricks.count() - shared::MAX_BRICKS);
+    const uint64_t needed = plan.volume_bytes + 2 * plan.minmax_bytes,
+                   has = device.info().memory_bytes;
     if (needed <= has) return "";
-    return fmt::format("{}: needs {:.2f} GiB on {}, {:.2f} GiB more than its {:.2f} GiB; use another device "
-                       "or a smaller volume", volume.name, double(needed) / (1 << 30), device.info().name,
-                       double(needed - has) / (1 << 30), double(has) / (1 << 30));
+    return fmt::format(
+        "{}: needs {:.2f} GiB on {}, {:.2f} GiB more than its {:.2f} GiB; use another device "
+        "or a smaller volume",
+        volume.name, double(needed) / (1 << 30), device.info().name,
+        double(needed - has) / (1 << 30), double(has) / (1 << 30));
 }
 
 }  // namespace isorast

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 8x8 pixels. Thread: one pixel. Out: its colour and its distance, from the technique's depth:
-// unproject, move the hit onto the trilinear surface, take the gradient, shade. One pass for all techniques.
+// Workgroup: 8x8 pixels. Thread: one pixel. Out: its colour and its distance, from the technique's
+// depth: unproject, move the hit onto the trilinear surface, take the gradient, shade. One pass for
+// all techniques.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
@@ -40,7 +41,7 @@ Hit crossing_in_cell(Ray ray, ivec3 cell, float t, float iso) {
     Hit hit = Hit(t, true, false);
     if (!(span.x < span.y)) return hit;
     float corners[8];
-    load_cell(cell, corners);
+    load_cell(brick_of(cell), cell, corners);
     const vec3 from = ray.origin + span.x * ray.direction - vec3(cell);
     const vec3 to = ray.origin + span.y * ray.direction - vec3(cell);
     const CellLine line = cell_line(corners, from, to, iso);
@@ -49,8 +50,8 @@ Hit crossing_in_cell(Ray ray, ivec3 cell, float t, float iso) {
     return Hit(mix(span.x, span.y, s), slope_at(line.cubic, s) > 0.0, true);
 }
 
-// The trilinear surface nearest to t along the ray, in the cell there or else in the cells before and
-// after it; t itself where the ray misses the trilinear surface (at silhouettes).
+// The trilinear surface nearest to t along the ray, in the cell there or else in the cells before
+// and after it; t itself where the ray misses the trilinear surface (at silhouettes).
 Hit refine_hit(Ray ray, float t, float iso) {
     const ivec3 cell = cell_of(ray.origin + t * ray.direction);
     Hit best = crossing_in_cell(ray, cell, t, iso);
@@ -72,7 +73,8 @@ Hit refine_hit(Ray ray, float t, float iso) {
 
 // A colour for each block, well apart from its neighbours'.
 vec3 block_color(ivec3 block) {
-    uint h = uint(block.x) * 0x9e3779b1u ^ uint(block.y) * 0x85ebca77u ^ uint(block.z) * 0xc2b2ae3du;
+    const uvec3 mixed = uvec3(block) * uvec3(0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du);
+    uint h = mixed.x ^ mixed.y ^ mixed.z;
     h = (h ^ h >> 15) * 0x2c1b3c6du;
     h ^= h >> 13;
     return 0.3 + 0.6 * vec3(h & 255u, h >> 8 & 255u, h >> 16 & 255u) / 255.0;

@@ -12,7 +12,8 @@ namespace isorast {
 class Shade {
 public:
     explicit Shade(const Grid& grid);
-    // Writes target.color (unless the technique did: Shading::forward) and, if wanted, target.distances.
+    // Writes target.color (unless the technique did: Shading::forward) and, if wanted,
+    // target.distances.
     void record(gpu::Commands& commands, const Frame& frame, const Target& target);
 
 private:

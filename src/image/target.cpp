@@ -10,7 +10,8 @@ namespace isorast {
 namespace {
 
 bool is_whole(const gpu::Texture& texture, Size size) {
-    return texture && texture.extent().width == size.width && texture.extent().height == size.height;
+    return texture && texture.extent().width == size.width &&
+           texture.extent().height == size.height;
 }
 
 }  // namespace
@@ -20,13 +21,15 @@ bool Target::fits(const Frame& frame) const {
            (!frame.want_depth || is_whole(distances, size));
 }
 
-void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame& frame, bool hardware) {
+void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame& frame,
+                 bool hardware) {
     size = frame.size;
     const VkExtent3D whole{size.width, size.height, 1}, one{1, 1, 1};
     const VkImageUsageFlags always = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     const VkImageUsageFlags storage = always | VK_IMAGE_USAGE_STORAGE_BIT;
     const VkImageUsageFlags both =
-        storage | (device.has_graphics() ? VkImageUsageFlags{VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT} : 0u);
+        storage |
+        (device.has_graphics() ? VkImageUsageFlags{VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT} : 0u);
     const VkImageUsageFlags attachment = always | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     const auto make = [&](gpu::Texture& texture, VkFormat format, VkExtent3D extent,
                           VkImageUsageFlags usage, const char* what) {
@@ -34,11 +37,12 @@ void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame
         commands.discard_to_general(texture);
     };
     make(color, VK_FORMAT_R8G8B8A8_UNORM, whole, both, "the picture");
-    make(depth, hardware ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R32_SFLOAT, whole, hardware ? attachment : storage,
-         "the picture's depth");
+    make(depth, hardware ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R32_SFLOAT, whole,
+         hardware ? attachment : storage, "the picture's depth");
     make(surfaces, VK_FORMAT_R32_UINT, frame.isovalues.size() > 1 ? whole : one, both,
          "the picture's surface numbers");
-    make(distances, VK_FORMAT_R32_SFLOAT, frame.want_depth ? whole : one, storage, "the picture's distances");
+    make(distances, VK_FORMAT_R32_SFLOAT, frame.want_depth ? whole : one, storage,
+         "the picture's distances");
 }
 
 }  // namespace isorast

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Target: what a frame is drawn into. Techniques write depth; the shading pass turns it into colours.
+// Target: what a frame is drawn into. Techniques write depth; the shading pass turns it into
+// colours.
 #pragma once
 #include <isorast/renderer.h>
 
@@ -15,10 +16,10 @@ class Device;
 // Depth is reversed: 1 at the near plane, 0 at the far plane and where there is no surface.
 struct Target {
     Size size{0, 0};
-    gpu::Texture color;     // R8G8B8A8_UNORM
-    gpu::Texture depth;     // D32_SFLOAT for the hardware rasterizer, R32_SFLOAT for compute
-    // 1x1 where a frame does not need them: the number of the surface in each pixel, R32_UINT (several
-    // surfaces), and its distance, R32_SFLOAT (Frame::want_depth).
+    gpu::Texture color;  // R8G8B8A8_UNORM
+    gpu::Texture depth;  // D32_SFLOAT for the hardware rasterizer, R32_SFLOAT for compute
+    // 1x1 where a frame does not need them: the number of the surface in each pixel, R32_UINT
+    // (several surfaces), and its distance, R32_SFLOAT (Frame::want_depth).
     gpu::Texture surfaces, distances;
 
     // Makes what is missing or too small. Not while a frame that uses the old images is in flight.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Camera and projection, in double precision up to the last moment. Depth is reversed: 1 at the near plane,
-// 0 at the far plane, which keeps 32-bit floats precise far away.
+// Camera and projection, in double precision up to the last moment. Depth is reversed: 1 at the
+// near plane, 0 at the far plane, which keeps 32-bit floats precise far away.
 #include "image/view.h"
 
 #include <fmt/format.h>
@@ -31,14 +31,17 @@ constexpr std::array<Color, 8> PALETTE{{{0.89f, 0.80f, 0.66f, 1},
                                         {0.40f, 0.45f, 0.70f, 1},
                                         {0.60f, 0.60f, 0.60f, 1}}};
 
-// The camera's axes and its half extents at unit view depth (perspective) or everywhere (orthographic).
+// The camera's axes and its half extents at unit view depth (perspective) or everywhere
+// (orthographic).
 struct Eye {
     dvec3 position, forward, right, up;
     double half_width = 1, half_height = 1, near = 0, far = 1;
     bool orthographic = false;
 };
 
-dvec3 to_vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+dvec3 to_vec(const std::array<double, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
 
 Eye make_eye(const Camera& camera, Size size) {
     Eye eye;
@@ -58,20 +61,24 @@ Eye make_eye(const Camera& camera, Size size) {
 dmat4 world_from_voxel(const Affine& affine) {
     dmat4 m(1);
     for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column) m[column][row] = affine.m[row][column];
+        for (int column = 0; column < 4; ++column)
+            m[column][row] = affine.m[row][column];
     return m;
 }
 
-// Near and far enclose the volume's box, a little widened; the near plane stays in front of the eye.
+// Near and far enclose the volume's box, a little widened; the near plane stays in front of the
+// eye.
 void fit_depth(Eye& eye, const dmat4& world, const std::array<uint32_t, 3>& dims) {
     double low = INFINITY, high = -INFINITY;
     for (int c = 0; c < 8; ++c) {
-        const dvec4 corner(c & 1 ? dims[0] - 1 : 0, c & 2 ? dims[1] - 1 : 0, c & 4 ? dims[2] - 1 : 0, 1);
+        const dvec4 corner(c & 1 ? dims[0] - 1 : 0, c & 2 ? dims[1] - 1 : 0,
+                           c & 4 ? dims[2] - 1 : 0, 1);
         const double depth = glm::dot(dvec3(world * corner) - eye.position, eye.forward);
         low = std::min(low, depth);
         high = std::max(high, depth);
     }
-    const double margin = std::max(1e-3 * (high - low), 1e-6 * std::max(std::abs(low), std::abs(high)));
+    const double margin =
+        std::max(1e-3 * (high - low), 1e-6 * std::max(std::abs(low), std::abs(high)));
     eye.near = low - margin;
     eye.far = high + margin;
     if (eye.far <= eye.near) eye.far = eye.near + 1;
@@ -117,7 +124,8 @@ void set_planes(shared::FrameInfo& info, const dmat4& clip) {
 
 void set_surfaces(shared::FrameInfo& info, const Frame& frame, const Stored& stored) {
     for (size_t i = 0; i < frame.isovalues.size(); ++i) {
-        const Color& color = i < frame.colors.size() ? frame.colors[i] : PALETTE[i % PALETTE.size()];
+        const Color& color =
+            i < frame.colors.size() ? frame.colors[i] : PALETTE[i % PALETTE.size()];
         info.surfaces[i] = {color.r, color.g, color.b, stored.from_value(frame.isovalues[i])};
     }
 }
@@ -127,25 +135,32 @@ void set_surfaces(shared::FrameInfo& info, const Frame& frame, const Stored& sto
 void check(const Frame& frame) {
     const auto [width, height] = frame.size;
     if (width == 0 || height == 0 || width > LARGEST_SIDE || height > LARGEST_SIDE)
-        throw Error(fmt::format("picture: expected a size of 1x1 to {0}x{0}, found {1}x{2}", LARGEST_SIDE, width, height));
+        throw Error(fmt::format("picture: expected a size of 1x1 to {0}x{0}, found {1}x{2}",
+                                LARGEST_SIDE, width, height));
     if (frame.isovalues.size() > shared::MAX_SURFACES)
-        throw Error(fmt::format("isovalues: at most {} in one picture, found {}", shared::MAX_SURFACES,
-                                frame.isovalues.size()));
+        throw Error(fmt::format("isovalues: at most {} in one picture, found {}",
+                                shared::MAX_SURFACES, frame.isovalues.size()));
     for (double isovalue : frame.isovalues)
-        if (!std::isfinite(isovalue)) throw Error("isovalues: expected finite numbers, found NaN or infinity");
+        if (!std::isfinite(isovalue))
+            throw Error("isovalues: expected finite numbers, found NaN or infinity");
     const Camera& camera = frame.camera;
     const dvec3 forward = to_vec(camera.target) - to_vec(camera.position);
     const double across = glm::length(glm::cross(forward, to_vec(camera.up)));
     if (!(across > 1e-9 * glm::length(forward) * glm::length(to_vec(camera.up))))
-        throw Error("camera: position and target must differ, and up must not lie along the viewing direction");
+        throw Error(
+            "camera: position and target must differ, and up must not lie along the viewing "
+            "direction");
     if (!camera.orthographic && !(camera.fov_degrees > 0 && camera.fov_degrees < 180))
-        throw Error(fmt::format("camera: expected a field of view between 0 and 180 degrees, found {}",
-                                camera.fov_degrees));
+        throw Error(
+            fmt::format("camera: expected a field of view between 0 and 180 degrees, found {}",
+                        camera.fov_degrees));
     if (camera.orthographic && !(camera.height > 0))
-        throw Error(fmt::format("camera: expected a positive orthographic height, found {}", camera.height));
+        throw Error(fmt::format("camera: expected a positive orthographic height, found {}",
+                                camera.height));
 }
 
-shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement, const Stored& stored) {
+shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement,
+                                  const Stored& stored) {
     Eye eye = make_eye(frame.camera, frame.size);
     const dmat4 world = world_from_voxel(placement.affine), voxel = glm::inverse(world);
     fit_depth(eye, world, placement.dims);
@@ -166,9 +181,12 @@ shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement
     info.world_y = glm::vec4(rows[1]);
     info.world_z = glm::vec4(rows[2]);
     // The light comes from behind the viewer's left shoulder.
-    info.light = glm::vec4(glm::normalize(glm::vec3(-eye.forward - 0.5 * eye.right + 0.7 * eye.up)), 0);
-    info.background = {frame.background.r, frame.background.g, frame.background.b, frame.background.a};
-    info.size = {frame.size.width, frame.size.height, frame.isovalues.size(), uint32_t(frame.shading)};
+    info.light =
+        glm::vec4(glm::normalize(glm::vec3(-eye.forward - 0.5 * eye.right + 0.7 * eye.up)), 0);
+    info.background = {frame.background.r, frame.background.g, frame.background.b,
+                       frame.background.a};
+    info.size = {frame.size.width, frame.size.height, frame.isovalues.size(),
+                 uint32_t(frame.shading)};
     return info;
 }
 

@@ -16,6 +16,7 @@ struct Placement {
 
 // Throws Error for a frame that cannot be drawn: sizes, isovalues, cameras.
 void check(const Frame& frame);
-shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement, const Stored& stored);
+shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement,
+                                  const Stored& stored);
 
 }  // namespace isorast

@@ -1,5 +1,6 @@
-// The trilinear field along a straight line through one cell is a cubic (Marmitt et al. 2004, "Fast and
-// accurate ray-voxel intersection techniques for iso-surface ray tracing"): its crossings of the isovalue.
+// The trilinear field along a straight line through one cell is a cubic (Marmitt et al. 2004, "Fast
+// and accurate ray-voxel intersection techniques for iso-surface ray tracing"): its crossings of
+// the isovalue.
 
 struct CellLine {
     vec4 cubic;   // coefficients of 1, s, s^2, s^3 of (value - isovalue), s in [0, 1]
@@ -12,8 +13,10 @@ float slope_at(vec4 c, float s) { return c.y + s * (2.0 * c.z + s * 3.0 * c.w); 
 
 // `from` and `to` are within the cell, 0 to 1 along each axis (or a rounding error beyond).
 CellLine cell_line(float corners[8], vec3 from, vec3 to, float iso) {
-    const float a = trilinear(corners, from) - iso, b = trilinear(corners, mix(from, to, 1.0 / 3.0)) - iso;
-    const float c = trilinear(corners, mix(from, to, 2.0 / 3.0)) - iso, d = trilinear(corners, to) - iso;
+    const float a = trilinear(corners, from) - iso;
+    const float b = trilinear(corners, mix(from, to, 1.0 / 3.0)) - iso;
+    const float c = trilinear(corners, mix(from, to, 2.0 / 3.0)) - iso;
+    const float d = trilinear(corners, to) - iso;
     CellLine line;
     line.cubic = vec4(a, -5.5 * a + 9.0 * b - 4.5 * c + d, 9.0 * a - 22.5 * b + 18.0 * c - 4.5 * d,
                       -4.5 * a + 13.5 * b - 13.5 * c + 4.5 * d);
@@ -28,8 +31,8 @@ CellLine cell_line(float corners[8], vec3 from, vec3 to, float iso) {
     return line;
 }
 
-// The crossing in [a, b], where the cubic is monotonic and changes sign: bisection in its secant form
-// (Illinois), which keeps the bracket.
+// The crossing in [a, b], where the cubic is monotonic and changes sign: bisection in its secant
+// form (Illinois), which keeps the bracket.
 float solve_between(vec4 cubic, float a, float b) {
     float fa = cubic_at(cubic, a), fb = cubic_at(cubic, b);
     float s = a;

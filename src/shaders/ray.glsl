@@ -6,9 +6,10 @@ struct Ray {
 
 Ray pixel_ray(vec2 pixel) {
     const vec2 ndc = 2.0 * pixel / vec2(frame.size.xy) - 1.0;
-    return Ray(frame.ray_origin.xyz + ndc.x * frame.ray_origin_x.xyz + ndc.y * frame.ray_origin_y.xyz,
-               frame.ray_direction.xyz + ndc.x * frame.ray_direction_x.xyz +
-                   ndc.y * frame.ray_direction_y.xyz);
+    const vec4 origin = frame.ray_origin + ndc.x * frame.ray_origin_x + ndc.y * frame.ray_origin_y;
+    const vec4 direction =
+        frame.ray_direction + ndc.x * frame.ray_direction_x + ndc.y * frame.ray_direction_y;
+    return Ray(origin.xyz, direction.xyz);
 }
 
 // Reversed depth (1 near, 0 far) to view depth in world units, and back.

@@ -7,7 +7,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "shaders/shared.h"
 
-layout(constant_id = 0) const uint VOXEL_BITS = 8;  // 8 and 16: integers, seen as [0, 1]; 32: floats
+// 8 and 16: integers, seen as [0, 1]; 32: floats.
+layout(constant_id = 0) const uint VOXEL_BITS = 8;
 
 layout(set = 0, binding = BIND_FRAME, std140) uniform FrameBlock { FrameInfo frame; };
 layout(set = 0, binding = BIND_GRID, std140) uniform GridBlock { GridInfo grid; };
@@ -20,9 +21,9 @@ layout(set = 0, binding = BIND_SAMPLER) uniform sampler linear_sampler;
 #define MINMAX_ACCESS readonly
 #endif
 // The same buffer thrice: a node is 2 bytes for 8-bit voxels, 4 for 16-bit, 8 for floats.
-layout(set = 0, binding = BIND_MINMAX, std430) MINMAX_ACCESS buffer MinMax8 { uint16_t minmax_8[]; };
-layout(set = 0, binding = BIND_MINMAX, std430) MINMAX_ACCESS buffer MinMax16 { uint minmax_16[]; };
-layout(set = 0, binding = BIND_MINMAX, std430) MINMAX_ACCESS buffer MinMax32 { vec2 minmax_32[]; };
+layout(set = 0, binding = BIND_MINMAX) MINMAX_ACCESS buffer MinMax8 { uint16_t minmax_8[]; };
+layout(set = 0, binding = BIND_MINMAX) MINMAX_ACCESS buffer MinMax16 { uint minmax_16[]; };
+layout(set = 0, binding = BIND_MINMAX) MINMAX_ACCESS buffer MinMax32 { vec2 minmax_32[]; };
 
 // The least and greatest stored value of a node of the pyramid.
 vec2 node_range(uint node) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Structures and constants that C++ and GLSL share. Only 16-byte members in uniform blocks, so that std140
-// and C++ agree; sizes are asserted below.
+// Structures and constants that C++ and GLSL share. Only 16-byte members in uniform blocks, so that
+// std140 and C++ agree; sizes are asserted below.
 #ifndef ISORAST_SHADERS_SHARED_H
 #define ISORAST_SHADERS_SHARED_H
 
@@ -19,22 +19,25 @@ using uint = uint32_t;
 #define ISORAST_CONSTANT const
 #endif
 
-// A block is 8^3 cells: the grain of min-max, of the active list and of culling. The paper's extraction
-// works on 8x8x4 cells (section 3.2), so that a cell's index fits 8 bits: a half of a block.
+// A block is 8^3 cells: the grain of min-max, of the active list and of culling. The paper's
+// extraction works on 8x8x4 cells (section 3.2), so that a cell's index fits 8 bits: a half of a
+// block.
 ISORAST_CONSTANT uint BLOCK = 8;
 // A group is 4x4x2 = 32 blocks: one 32-bit mask of active blocks.
 ISORAST_CONSTANT uint GROUP_X = 4, GROUP_Y = 4, GROUP_Z = 2, GROUP_BLOCKS = 32;
-// A chunk is 1024 groups: 32768 blocks, so that a block's place in its chunk fits a 16-bit list entry, and
-// the two halves of its blocks fit the 65535 workgroups that every device can launch along an axis.
+// A chunk is 1024 groups: 32768 blocks, so that a block's place in its chunk fits a 16-bit list
+// entry, and the two halves of its blocks fit the 65535 workgroups that every device can launch
+// along an axis.
 ISORAST_CONSTANT uint CHUNK_GROUPS = 1024, CHUNK_BLOCKS = 32768;
 // Most workgroups that one list-driven dispatch starts; they loop over longer lists.
 ISORAST_CONSTANT uint MAX_LIST_GROUPS = 32768;
-ISORAST_CONSTANT uint MAX_LEVELS = 12;    // of the min-max pyramid: volumes up to 16384 voxels a side
+ISORAST_CONSTANT uint MAX_LEVELS = 12;  // of the min-max pyramid: volumes up to 16384 voxels a side
 ISORAST_CONSTANT uint MAX_BRICKS = 64;
 ISORAST_CONSTANT uint MAX_SURFACES = 32;  // opaque surfaces in one picture
 
 // Descriptor set 0, the same in every pipeline.
-ISORAST_CONSTANT uint BIND_FRAME = 0, BIND_GRID = 1, BIND_BRICKS = 2, BIND_SAMPLER = 3, BIND_MINMAX = 4;
+ISORAST_CONSTANT uint BIND_FRAME = 0, BIND_GRID = 1, BIND_BRICKS = 2, BIND_SAMPLER = 3,
+                      BIND_MINMAX = 4;
 
 struct GridInfo {
     uvec4 voxels;       // xyz: voxels along each axis
@@ -42,25 +45,26 @@ struct GridInfo {
     uvec4 groups;       // xyz: groups along each axis; w: all
     uvec4 brick_cells;  // xyz: cells of a brick along each axis, whole blocks
     uvec4 bricks;       // xyz: bricks along each axis; w: levels of the min-max pyramid
-    vec4 range;         // x, y: least and greatest finite stored value (filled once the pyramid is built)
+    vec4 range;  // x, y: least and greatest finite stored value (filled once the pyramid is built)
     uvec4 levels[MAX_LEVELS];  // xyz: nodes along each axis; w: index of the level's first node
 };
 
 // One frame. Positions are in voxel space: voxel centres at whole numbers.
 struct FrameInfo {
     mat4 clip_from_voxel;  // reversed depth: 1 at the near plane, 0 at the far plane
-    // The ray of the point (x, y) in normalized device coordinates: origin + x*origin_x + y*origin_y, and the
-    // same for its direction, whose length is one unit of view depth in the world.
+    // The ray of the point (x, y) in normalized device coordinates: origin + x*origin_x +
+    // y*origin_y, and the same for its direction, whose length is one unit of view depth in the
+    // world.
     vec4 ray_origin, ray_origin_x, ray_origin_y;
     vec4 ray_direction, ray_direction_x, ray_direction_y;
-    vec4 depth_range;      // near, far (view depth, world units); z: 1 if orthographic
-    vec4 planes[6];        // of the frustum, inside is positive
+    vec4 depth_range;                   // near, far (view depth, world units); z: 1 if orthographic
+    vec4 planes[6];                     // of the frustum, inside is positive
     vec4 normal_x, normal_y, normal_z;  // rows: world normal from a gradient in voxel space
     vec4 world_x, world_y, world_z;     // rows: world position from voxel space
-    vec4 light;            // xyz: direction towards the light, world; w unused
-    vec4 background;       // sRGB, alpha
-    uvec4 size;            // width, height; z: surfaces; w: Shading
-    vec4 surfaces[MAX_SURFACES];  // rgb: sRGB colour; w: isovalue in stored units
+    vec4 light;                         // xyz: direction towards the light, world; w unused
+    vec4 background;                    // sRGB, alpha
+    uvec4 size;                         // width, height; z: surfaces; w: Shading
+    vec4 surfaces[MAX_SURFACES];        // rgb: sRGB colour; w: isovalue in stored units
 };
 
 // What the passes count; see FrameStats.

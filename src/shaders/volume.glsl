@@ -1,7 +1,8 @@
 // Voxels and the trilinear field between them. Stored values: 0..255, 0..65535, or floats.
 // Everything here fetches voxels and interpolates in 32-bit arithmetic: the fixed-point filters of
-// samplers (8 bits of weight) are for marching only (sample_filtered). Every shader is compiled twice: with
-// BRICKED defined for volumes of several bricks, which needs non-uniform indexing, and without.
+// samplers (8 bits of weight) are for marching only (sample_filtered). Every shader is compiled
+// twice: with BRICKED defined for volumes of several bricks, which needs non-uniform indexing, and
+// without.
 
 // A brick and the voxel that its texel 0 holds.
 struct Brick {
@@ -9,18 +10,21 @@ struct Brick {
     ivec3 origin;
 };
 
-// The brick that holds the cell with this lowest corner, its 8 voxels and an apron of one voxel around.
+// The brick that holds the cell with this lowest corner, its 8 voxels and an apron of one voxel
+// around.
 Brick brick_of(ivec3 cell) {
 #ifndef BRICKED
     return Brick(0u, ivec3(0));
 #else
     const ivec3 where = min(cell / ivec3(grid.brick_cells.xyz), ivec3(grid.bricks.xyz) - 1);
-    const uint index = uint(where.x) + grid.bricks.x * (uint(where.y) + grid.bricks.y * uint(where.z));
-    return Brick(index, max(where * ivec3(grid.brick_cells.xyz) - 1, 0));
+    const ivec3 bricks_along = ivec3(grid.bricks.xyz);
+    const int index = where.x + bricks_along.x * (where.y + bricks_along.y * where.z);
+    return Brick(uint(index), max(where * ivec3(grid.brick_cells.xyz) - 1, 0));
 #endif
 }
 
-// 8- and 16-bit voxels come as fractions: rounding gives back the very integer, so that ties are exact.
+// 8- and 16-bit voxels come as fractions: rounding gives back the very integer, so that ties are
+// exact.
 float stored_value(float texel) {
     if (VOXEL_BITS == 8) return round(texel * 255.0);
     if (VOXEL_BITS == 16) return round(texel * 65535.0);
@@ -48,14 +52,17 @@ float voxel(Brick brick, ivec3 position) {
     return stored_value(fetch_texel(brick.index, position - brick.origin));
 }
 
-ivec3 clamp_to_volume(ivec3 position) { return clamp(position, ivec3(0), ivec3(grid.voxels.xyz) - 1); }
+ivec3 clamp_to_volume(ivec3 position) {
+    return clamp(position, ivec3(0), ivec3(grid.voxels.xyz) - 1);
+}
 
 // The lowest corner of the cell that holds p.
-ivec3 cell_of(vec3 p) { return clamp(ivec3(floor(p)), ivec3(0), max(ivec3(grid.voxels.xyz) - 2, 0)); }
+ivec3 cell_of(vec3 p) {
+    return clamp(ivec3(floor(p)), ivec3(0), max(ivec3(grid.voxels.xyz) - 2, 0));
+}
 
 // The 8 corners of a cell, corner c at (c & 1, c >> 1 & 1, c >> 2).
-void load_cell(ivec3 cell, out float corners[8]) {
-    const Brick brick = brick_of(cell);
+void load_cell(Brick brick, ivec3 cell, out float corners[8]) {
     for (int c = 0; c < 8; ++c) corners[c] = voxel(brick, cell + ivec3(c & 1, c >> 1 & 1, c >> 2));
 }
 
@@ -76,18 +83,20 @@ float sample_filtered(Brick brick, vec3 p) {
 float sample_exactly(Brick brick, vec3 p) {
     const ivec3 cell = cell_of(p);
     float corners[8];
-    for (int c = 0; c < 8; ++c) corners[c] = voxel(brick, cell + ivec3(c & 1, c >> 1 & 1, c >> 2));
+    load_cell(brick, cell, corners);
     return trilinear(corners, p - vec3(cell));
 }
 
 // The gradient in voxel space at a voxel: central differences, one-sided at the volume's border.
-// Voxels that are not finite count as the least finite value, so that normals beside them stay sane.
+// Voxels that are not finite count as the least finite value, so that normals beside them stay
+// sane.
 vec3 voxel_gradient(Brick brick, ivec3 position) {
     vec3 gradient;
     for (int axis = 0; axis < 3; ++axis) {
         ivec3 step = ivec3(0);
         step[axis] = 1;
-        const ivec3 above = clamp_to_volume(position + step), below = clamp_to_volume(position - step);
+        const ivec3 above = clamp_to_volume(position + step);
+        const ivec3 below = clamp_to_volume(position - step);
         const float difference = max(voxel(brick, above), grid.range.x) -
                                  max(voxel(brick, below), grid.range.x);
         gradient[axis] = difference / float(max(above[axis] - below[axis], 1));
@@ -110,14 +119,17 @@ vec3 field_gradient(vec3 p) {
     return gradient;
 }
 
-// The unit normal in the world on the viewer's side of the surface. `outward` says that the viewer is where
-// values are below the isovalue; interpolated gradients can still point a little away from the eye near
-// silhouettes, and are turned back just so far that they do not.
+vec3 world_direction(vec3 direction) {
+    return normalize(direction * mat3(frame.world_x.xyz, frame.world_y.xyz, frame.world_z.xyz));
+}
+
+// The unit normal in the world on the viewer's side of the surface. `outward` says that the viewer
+// is where values are below the isovalue; interpolated gradients can still point a little away from
+// the eye near silhouettes, and are turned back just so far that they do not.
 vec3 world_normal(vec3 gradient, vec3 direction, bool outward) {
     const vec3 g = outward ? -gradient : gradient;
-    const vec3 n = vec3(dot(frame.normal_x.xyz, g), dot(frame.normal_y.xyz, g), dot(frame.normal_z.xyz, g));
-    const vec3 towards = -normalize(vec3(dot(frame.world_x.xyz, direction), dot(frame.world_y.xyz, direction),
-                                         dot(frame.world_z.xyz, direction)));
+    const vec3 n = g * mat3(frame.normal_x.xyz, frame.normal_y.xyz, frame.normal_z.xyz);
+    const vec3 towards = -world_direction(direction);
     const float length_squared = dot(n, n);
     if (!(length_squared > 0.0)) return towards;
     const vec3 unit = n * inversesqrt(length_squared);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Embedding: a host that owns instance, device, queue and command buffers records our frames into them, two in
-// flight, and gets the picture that render() makes.
+// Embedding: a host that owns instance, device, queue and command buffers records our frames into
+// them, two in flight, and gets the picture that render() makes.
 #include <isorast/embed.h>
 
 #include <cstring>
@@ -27,10 +27,12 @@ HostDevice host_of(const gpu::Device& device) {
     return host;
 }
 
-void copy_color(VkCommandBuffer commands, const RecordedFrame& frame, Size size, const gpu::Buffer& pixels) {
+void copy_color(VkCommandBuffer commands, const RecordedFrame& frame, Size size,
+                const gpu::Buffer& pixels) {
     const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                    .imageExtent = {size.width, size.height, 1}};
-    vkCmdCopyImageToBuffer(commands, frame.color, VK_IMAGE_LAYOUT_GENERAL, pixels.handle(), 1, &region);
+    vkCmdCopyImageToBuffer(commands, frame.color, VK_IMAGE_LAYOUT_GENERAL, pixels.handle(), 1,
+                           &region);
 }
 
 TEST_F(GpuTest, AHostRecordsFramesIntoItsOwnCommands) {
@@ -50,7 +52,8 @@ TEST_F(GpuTest, AHostRecordsFramesIntoItsOwnCommands) {
             copy_color(commands, recorded, SIZE, pixels);
             submission.submit();
             submission.wait();
-            EXPECT_EQ(std::memcmp(pixels.data<uint8_t>(), expected.rgba.data(), bytes), 0) << lane.name;
+            EXPECT_EQ(std::memcmp(pixels.data<uint8_t>(), expected.rgba.data(), bytes), 0)
+                << lane.name;
         }
         EXPECT_THROW(record(embedded, VK_NULL_HANDLE, f, 2), Error);
     }

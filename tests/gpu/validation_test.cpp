@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The gate works: planted bugs are reported by the validation layer. (It does not see hazards around mesh
-// draws; isorast's only barrier is a full one between any two passes, see gpu::Commands::barrier.)
+// The gate works: planted bugs are reported by the validation layer. (It does not see hazards
+// around mesh draws; isorast's only barrier is a full one between any two passes, see
+// gpu::Commands::barrier.)
 #include <gtest/gtest.h>
 #include <isorast/renderer.h>
 

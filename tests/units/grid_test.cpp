@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The grid's arithmetic, without a GPU: bricks cover every cell with its apron, and stored values keep the
-// order and the ties of data values.
+// The grid's arithmetic, without a GPU: bricks cover every cell with its apron, and stored values
+// keep the order and the ties of data values.
 #include <gtest/gtest.h>
 #include <isorast/error.h>
 
@@ -16,7 +16,8 @@ namespace {
 using namespace isorast;
 
 // Every voxel that a cell of the brick or its gradients touch must be in the brick.
-void expect_covered(const BrickPlan& plan, uint32_t max_side, uint64_t max_bytes, uint32_t voxel_bytes) {
+void expect_covered(const BrickPlan& plan, uint32_t max_side, uint64_t max_bytes,
+                    uint32_t voxel_bytes) {
     for (uint32_t i = 0; i < plan.count(); ++i) {
         const glm::uvec3 first = plan.where(i) * plan.brick_cells, origin = plan.origin(i);
         const glm::uvec3 extent = plan.extent(i);
@@ -24,7 +25,8 @@ void expect_covered(const BrickPlan& plan, uint32_t max_side, uint64_t max_bytes
             ASSERT_LT(first[axis] + 1, plan.voxels[axis]) << "a brick without cells";
             EXPECT_LE(extent[axis], max_side);
             EXPECT_EQ(origin[axis], first[axis] == 0 ? 0 : first[axis] - 1);
-            const uint32_t last = std::min(first[axis] + plan.brick_cells[axis] + 1, plan.voxels[axis] - 1);
+            const uint32_t last =
+                std::min(first[axis] + plan.brick_cells[axis] + 1, plan.voxels[axis] - 1);
             EXPECT_EQ(origin[axis] + extent[axis] - 1, last);
         }
         EXPECT_LE(uint64_t{extent.x} * extent.y * extent.z * voxel_bytes, max_bytes);
@@ -39,7 +41,8 @@ TEST(Bricks, OneWhereItFits) {
 }
 
 TEST(Bricks, CoverEveryCellWithinTheLimits) {
-    for (const glm::uvec3 voxels : {glm::uvec3(64), glm::uvec3(65, 100, 33), glm::uvec3(300, 20, 41)})
+    for (const glm::uvec3 voxels :
+         {glm::uvec3(64), glm::uvec3(65, 100, 33), glm::uvec3(300, 20, 41)})
         for (const uint32_t side : {11u, 24u, 40u, 64u})
             for (const uint64_t bytes : {uint64_t{5000}, uint64_t{100000}, uint64_t{1} << 30}) {
                 const BrickPlan plan = plan_bricks(voxels, 2, side, bytes);
@@ -54,10 +57,13 @@ TEST(Bricks, ManyGigabytes) {
     EXPECT_GE(plan.count(), 32u);
 }
 
-TEST(Bricks, ATooSmallSideIsAnError) { EXPECT_THROW(plan_bricks(glm::uvec3(64), 1, 10, 1u << 30), Error); }
+TEST(Bricks, ATooSmallSideIsAnError) {
+    EXPECT_THROW(plan_bricks(glm::uvec3(64), 1, 10, 1u << 30), Error);
+}
 
 template <class T>
-Volume volume_of(const std::vector<T>& values, VoxelType type, double slope = 1, double intercept = 0) {
+Volume volume_of(const std::vector<T>& values, VoxelType type, double slope = 1,
+                 double intercept = 0) {
     Volume volume;
     volume.dims = {uint32_t(values.size()), 1, 1};
     volume.type = type;
@@ -90,12 +96,14 @@ void expect_same_order(const Volume& volume) {
     const Stored stored = stored_as(volume);
     const std::vector<double> values = stored_values(volume);
     for (uint32_t i = 0; i < volume.dims[0]; ++i) {
-        EXPECT_NEAR(stored.value(values[i]), volume.value(i, 0, 0), 1e-6 * std::abs(volume.value(i, 0, 0)));
+        EXPECT_NEAR(stored.value(values[i]), volume.value(i, 0, 0),
+                    1e-6 * std::abs(volume.value(i, 0, 0)));
         for (uint32_t j = 0; j < volume.dims[0]; ++j) {
             const double isovalue = volume.value(j, 0, 0);
-            EXPECT_EQ(values[i] >= double(stored.from_value(isovalue)), volume.value(i, 0, 0) >= isovalue)
-                << name_of(volume.type) << " slope " << volume.slope << ": " << volume.value(i, 0, 0)
-                << " against " << isovalue;
+            EXPECT_EQ(values[i] >= double(stored.from_value(isovalue)),
+                      volume.value(i, 0, 0) >= isovalue)
+                << name_of(volume.type) << " slope " << volume.slope << ": "
+                << volume.value(i, 0, 0) << " against " << isovalue;
         }
     }
 }
@@ -104,19 +112,25 @@ TEST(Stored, KeepsOrderAndTies) {
     for (const double slope : {1.0, -1.0, 0.25, -2.0}) {
         expect_same_order(volume_of<uint8_t>({0, 1, 127, 128, 254, 255}, VoxelType::u8, slope, -3));
         expect_same_order(volume_of<int8_t>({-128, -127, -1, 0, 1, 127}, VoxelType::i8, slope, 8));
-        expect_same_order(volume_of<uint16_t>({0, 1, 256, 32767, 32768, 65535}, VoxelType::u16, slope));
-        expect_same_order(volume_of<int16_t>({-32768, -1024, -1, 0, 1, 3071, 32767}, VoxelType::i16, slope, -1024));
-        expect_same_order(volume_of<uint32_t>({4000000000u, 4000000001u, 4000000017u}, VoxelType::u32, slope));
-        expect_same_order(volume_of<int32_t>({-2000000000, -1999999999, -1999999000}, VoxelType::i32, slope));
+        expect_same_order(
+            volume_of<uint16_t>({0, 1, 256, 32767, 32768, 65535}, VoxelType::u16, slope));
+        expect_same_order(volume_of<int16_t>({-32768, -1024, -1, 0, 1, 3071, 32767}, VoxelType::i16,
+                                             slope, -1024));
+        expect_same_order(
+            volume_of<uint32_t>({4000000000u, 4000000001u, 4000000017u}, VoxelType::u32, slope));
+        expect_same_order(
+            volume_of<int32_t>({-2000000000, -1999999999, -1999999000}, VoxelType::i32, slope));
         expect_same_order(volume_of<float>({-2.5f, -0.0f, 0.125f, 1e6f}, VoxelType::f32, slope));
         expect_same_order(volume_of<double>({1e9, 1e9 + 0.5, 1e9 + 64}, VoxelType::f64, slope));
     }
 }
 
 TEST(Stored, NotFiniteIsOutsideOfEverything) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                inf = std::numeric_limits<float>::infinity();
     const auto values = stored_values(volume_of<float>({nan, inf, -inf, 1.0f}, VoxelType::f32));
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(values[i], double(NOT_FINITE));
+    for (int i = 0; i < 3; ++i)
+        EXPECT_EQ(values[i], double(NOT_FINITE));
     EXPECT_EQ(values[3], 1.0);
 }
 

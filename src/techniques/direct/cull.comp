@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: one active group at a time. Thread: one block. Out: the list of active blocks in the frustum,
-// in chunks, and the task shader's indirect arguments.
+// Workgroup: one active group at a time. Thread: one block. Out: the list of active blocks in the
+// frustum, in chunks, and the task shader's indirect arguments.
 #include "shaders/scene.glsl"
 #include "techniques/direct/list.glsl"
 

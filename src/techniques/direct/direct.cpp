@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// direct: Kreskowski, Rendle and Froehlich, "Efficient Direct Isosurface Rasterization of Scalar Volumes",
-// 2022. Blocks that the isovalue crosses are listed once an isovalue (find active); every frame those in
-// the frustum (cull) are extracted by task and mesh shaders and rasterized at once (extract and
-// rasterize). Nothing is stored.
+// direct: Kreskowski, Rendle and Froehlich, "Efficient Direct Isosurface Rasterization of Scalar
+// Volumes", 2022. Blocks that the isovalue crosses are listed once an isovalue (find active); every
+// frame those in the frustum (cull) are extracted by task and mesh shaders and rasterized at once
+// (extract and rasterize). Nothing is stored.
 #include <fmt/format.h>
 #include <isorast/error.h>
 
@@ -69,10 +69,11 @@ Direct::Direct(const TechniqueContext& context) : grid_(context.grid) {
             device.info().name,
             device.info().why_not_hardware.empty() ? "mesh shaders are not enabled"
                                                    : device.info().why_not_hardware));
-    if (context.options.exact)
-        throw Error("direct: has no exact way; use --technique raymarch");
+    if (context.options.exact) throw Error("direct: has no exact way; use --technique raymarch");
     if (context.options.rasterizer == Rasterizer::compute)
-        throw Error("direct: has no compute rasterizer yet; use --rasterizer hardware, or --technique raymarch");
+        throw Error(
+            "direct: has no compute rasterizer yet; use --rasterizer hardware, or --technique "
+            "raymarch");
 
     const auto groups = grid_.info().groups.w;
     chunks_ = (groups + shared::CHUNK_GROUPS - 1) / shared::CHUNK_GROUPS;
@@ -92,15 +93,19 @@ Direct::Direct(const TechniqueContext& context) : grid_(context.grid) {
     });
 
     find_active_ = gpu::Pipeline::compute(
-        device, grid_.pipeline_info("find active", {Kind::buffer, Kind::buffer}, 8), find_active_comp);
+        device, grid_.pipeline_info("find active", {Kind::buffer, Kind::buffer}, 8),
+        find_active_comp);
     const std::vector lists{Kind::buffer, Kind::buffer, Kind::buffer, Kind::buffer};
     cull_ = gpu::Pipeline::compute(device, grid_.pipeline_info("cull", lists, 0, {1}), cull_comp);
-    cull_off_ = gpu::Pipeline::compute(device, grid_.pipeline_info("cull", lists, 0, {0}), cull_comp);
+    cull_off_ =
+        gpu::Pipeline::compute(device, grid_.pipeline_info("cull", lists, 0, {0}), cull_comp);
 
     const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer},
                                           sizeof(DrawPush));
-    const gpu::Shader task{VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)};
-    const gpu::Shader mesh{VK_SHADER_STAGE_MESH_BIT_EXT, grid_.pick(extract_mesh, extract_mesh_bricked)};
+    const gpu::Shader task{VK_SHADER_STAGE_TASK_BIT_EXT,
+                           grid_.pick(extract_task, extract_task_bricked)};
+    const gpu::Shader mesh{VK_SHADER_STAGE_MESH_BIT_EXT,
+                           grid_.pick(extract_mesh, extract_mesh_bricked)};
     const gpu::Shader forward_mesh{VK_SHADER_STAGE_MESH_BIT_EXT,
                                    grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked)};
     const gpu::Shader numbers{VK_SHADER_STAGE_FRAGMENT_BIT, surface_number_frag};
@@ -108,15 +113,16 @@ Direct::Direct(const TechniqueContext& context) : grid_(context.grid) {
     extract_ = gpu::Pipeline::graphics(device, info, {task, mesh}, {{}, depth});
     extract_numbered_ =
         gpu::Pipeline::graphics(device, info, {task, mesh, numbers}, {{VK_FORMAT_R32_UINT}, depth});
-    extract_forward_ =
-        gpu::Pipeline::graphics(device, info,
-                                {task, forward_mesh, {VK_SHADER_STAGE_FRAGMENT_BIT, forward_frag}},
-                                {{VK_FORMAT_R8G8B8A8_UNORM}, depth});
+    extract_forward_ = gpu::Pipeline::graphics(
+        device, info, {task, forward_mesh, {VK_SHADER_STAGE_FRAGMENT_BIT, forward_frag}},
+        {{VK_FORMAT_R8G8B8A8_UNORM}, depth});
 }
 
 uint64_t Direct::gpu_bytes() const {
-    uint64_t bytes = cases_.bytes() + drawn_blocks_.bytes() + 2 * draws_.bytes() + counters_.bytes();
-    for (const auto& list : active_groups_) bytes += list.bytes();
+    uint64_t bytes =
+        cases_.bytes() + drawn_blocks_.bytes() + 2 * draws_.bytes() + counters_.bytes();
+    for (const auto& list : active_groups_)
+        bytes += list.bytes();
     return bytes;
 }
 
@@ -131,7 +137,8 @@ void Direct::prepare(Commands& commands, const std::vector<float>& isovalues) {
         commands.update(active_groups_[i], 0, empty.data(), sizeof(empty));
     }
     commands.barrier();
-    for (uint32_t i = 0; i < isovalues.size(); ++i) find_active(commands, i, isovalues[i]);
+    for (uint32_t i = 0; i < isovalues.size(); ++i)
+        find_active(commands, i, isovalues[i]);
     commands.barrier();
 }
 
@@ -170,18 +177,24 @@ void Direct::extract_and_rasterize(Commands& commands, uint32_t surface, const F
                                    const Target& target) {
     const auto pass = commands.pass("extract and rasterize");
     const bool forward = frame.shading == Shading::forward, numbered = frame.isovalues.size() > 1;
-    const gpu::Pipeline& pipeline = forward ? extract_forward_ : numbered ? extract_numbered_ : extract_;
+    const gpu::Pipeline& pipeline = forward    ? extract_forward_
+                                    : numbered ? extract_numbered_
+                                               : extract_;
     std::vector<const gpu::Texture*> colors;
-    if (forward) colors = {&target.color};
-    else if (numbered) colors = {&target.surfaces};
+    if (forward)
+        colors = {&target.color};
+    else if (numbered)
+        colors = {&target.surfaces};
     VkClearColorValue clear{};
-    if (forward) clear = {{frame.background.r, frame.background.g, frame.background.b, frame.background.a}};
+    if (forward)
+        clear = {{frame.background.r, frame.background.g, frame.background.b, frame.background.a}};
     commands.begin_rendering(colors, &target.depth, /* clear= */ surface == 0, clear);
     if (surface < frame.isovalues.size()) {
         commands.bind(pipeline, {drawn_blocks_, cases_});
         for (uint32_t chunk = 0; chunk < chunks_; ++chunk) {
             commands.push(DrawPush{chunk, surface});
-            commands.draw_mesh_tasks_indirect(draws_, chunk * sizeof(VkDrawMeshTasksIndirectCommandEXT));
+            commands.draw_mesh_tasks_indirect(draws_,
+                                              chunk * sizeof(VkDrawMeshTasksIndirectCommandEXT));
         }
     }
     commands.end_rendering();

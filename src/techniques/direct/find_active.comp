@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 4 groups of 32 blocks. Thread: one block. Out: the groups that hold a block which the isovalue
-// crosses, each with a mask of such blocks (Kreskowski 2022, section 3.5.1, once an isovalue).
+// Workgroup: 4 groups of 32 blocks. Thread: one block. Out: the groups that hold a block which the
+// isovalue crosses, each with a mask of such blocks (Kreskowski 2022, section 3.5.1, once an
+// isovalue).
 #include "shaders/scene.glsl"
 #include "techniques/direct/list.glsl"
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Thread: one fragment. Out: its colour, from the mesh shader's normals: the paper's own way to shade
-// (Kreskowski 2022, section 4, "Shading").
+// Thread: one fragment. Out: its colour, from the mesh shader's normals: the paper's own way to
+// shade (Kreskowski 2022, section 4, "Shading").
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/shading.glsl"

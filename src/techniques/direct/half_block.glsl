@@ -1,6 +1,7 @@
-// Half of a block, 8x8x4 cells (the paper's block, section 3.2), seen as bits. Its 9x9x5 corners are 45
-// corner rows of 9 along x; its cells are 32 cell rows of 8. One bit a corner says "inside"; what follows
-// from it, edges and cells that the surface crosses, follows for a whole row at a time.
+// Half of a block, 8x8x4 cells (the paper's block, section 3.2), seen as bits. Its 9x9x5 corners
+// are 45 corner rows of 9 along x; its cells are 32 cell rows of 8. One bit a corner says "inside";
+// what follows from it, edges and cells that the surface crosses, follows for a whole row at a
+// time.
 
 const uint CORNER_ROWS = 45, CELL_ROWS = 32, SIGN_WORDS = 15;
 
@@ -38,7 +39,8 @@ uint occupied_cells(CellRow row) {
 
 // The marching-cubes case of cell x: bit c for corner c = x + 2y + 4z.
 uint cell_case(CellRow row, uint x) {
-    return (row.a >> x & 3u) | (row.b >> x & 3u) << 2 | (row.c >> x & 3u) << 4 | (row.d >> x & 3u) << 6;
+    const uvec4 pairs = uvec4(row.a, row.b, row.c, row.d) >> x & 3u;
+    return pairs.x | pairs.y << 2 | pairs.z << 4 | pairs.w << 6;
 }
 
 uint triangle_count(uint cell_case_index) { return cases[cell_case_index].y >> 28; }

@@ -1,5 +1,6 @@
-// Lists of blocks. Active groups: the isovalue's, each a group's number and a mask of its active blocks.
-// Drawn blocks: the frame's, in chunks of 32768 blocks, each entry the block's place in its chunk.
+// Lists of blocks. Active groups: the isovalue's, each a group's number and a mask of its active
+// blocks. Drawn blocks: the frame's, in chunks of 32768 blocks, each entry the block's place in its
+// chunk.
 
 // The first block of a group.
 uvec3 group_origin(uint group) {

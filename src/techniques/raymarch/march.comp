@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 8x8 pixels. Thread: one ray. Out: the depth of the first hit, and the number of its surface.
+// Workgroup: 8x8 pixels. Thread: one ray. Out: the depth of the first hit, and the number of its
+// surface.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // variant march_numbered_frag: -DNUMBERED
-// Thread: one ray. Out: the depth of the first hit, and the number of its surface: the paper's reference as
-// the paper has it, in a fragment shader.
+// Thread: one ray. Out: the depth of the first hit, and the number of its surface: the paper's
+// reference as the paper has it, in a fragment shader.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"

@@ -3,11 +3,13 @@
 // bisections. EXACT solves each cell's cubic instead.
 
 layout(constant_id = 1) const bool EXACT = false;
-// Sample through the texture unit, as in the paper; CPU drivers round its results to 8 bits for 8-bit voxels,
-// so there voxels are fetched and interpolated.
+// Sample through the texture unit, as in the paper; CPU drivers round its results to 8 bits for
+// 8-bit voxels, so there voxels are fetched and interpolated.
 layout(constant_id = 2) const bool FILTERED = true;
 
-float field_at(Brick brick, vec3 p) { return FILTERED ? sample_filtered(brick, p) : sample_exactly(brick, p); }
+float field_at(Brick brick, vec3 p) {
+    return FILTERED ? sample_filtered(brick, p) : sample_exactly(brick, p);
+}
 
 struct March {
     Ray ray;
@@ -28,12 +30,14 @@ bool crossed_to(inout March march, bool inside) {
 }
 
 float exit_of(March march, vec3 low, vec3 high) {
-    const vec3 t = (mix(low, high, greaterThan(march.ray.direction, vec3(0.0))) - march.ray.origin) * march.inverse;
+    const vec3 far_sides = mix(low, high, greaterThan(march.ray.direction, vec3(0.0)));
+    const vec3 t = (far_sides - march.ray.origin) * march.inverse;
     return min(min(t.x, t.y), t.z);
 }
 
 vec3 position_at(March march, float t) {
-    return clamp(march.ray.origin + t * march.ray.direction, vec3(0.0), vec3(grid.voxels.xyz) - 1.0);
+    const vec3 last = vec3(grid.voxels.xyz) - 1.0;
+    return clamp(march.ray.origin + t * march.ray.direction, vec3(0.0), last);
 }
 
 // The paper's way through a block that the isovalue crosses.
@@ -62,15 +66,16 @@ bool step_through(inout March march, ivec3 block, float end) {
 // The exact way: cell after cell, each solved as a cubic.
 bool solve_through(inout March march, ivec3 block, float end) {
     const Brick brick = brick_of(block * int(BLOCK));
-    const ivec3 low = block * int(BLOCK), high = min(low + int(BLOCK), ivec3(grid.voxels.xyz) - 1) - 1;
+    const ivec3 low = block * int(BLOCK);
+    const ivec3 high = min(low + int(BLOCK), ivec3(grid.voxels.xyz) - 1) - 1;
     const ivec3 forward = ivec3(sign(march.ray.direction));
     ivec3 cell = clamp(ivec3(floor(position_at(march, march.t + march.nudge))), low, high);
     for (int i = 0; i < 32; ++i) {
         const float leave = min(max(exit_of(march, vec3(cell), vec3(cell + 1)), march.t), end);
         float corners[8];
-        float least = 3.4e38, greatest = -3.4e38;
-        for (int c = 0; c < 8; ++c) {
-            corners[c] = voxel(brick, cell + ivec3(c & 1, c >> 1 & 1, c >> 2));
+        load_cell(brick, cell, corners);
+        float least = corners[0], greatest = corners[0];
+        for (int c = 1; c < 8; ++c) {
             least = min(least, corners[c]);
             greatest = max(greatest, corners[c]);
         }
@@ -103,7 +108,8 @@ bool first_hit(Ray ray, float iso, out float hit) {
     const vec3 least = vec3(1e-20 + 1e-9 * length(ray.direction));
     ray.direction = mix(ray.direction, least, lessThan(abs(ray.direction), least));
     March march = March(ray, 1.0 / ray.direction, iso, 0.0, false, false, 0.0);
-    march.nudge = (1e-4 + 2e-7 * float(grid.voxels.x + grid.voxels.y + grid.voxels.z)) / length(ray.direction);
+    const float all_sides = float(grid.voxels.x + grid.voxels.y + grid.voxels.z);
+    march.nudge = (1e-4 + 2e-7 * all_sides) / length(ray.direction);
 
     const vec3 last = vec3(grid.voxels.xyz) - 1.0;
     const vec3 a = -ray.origin * march.inverse, b = (last - ray.origin) * march.inverse;
@@ -127,7 +133,8 @@ bool first_hit(Ray ray, float iso, out float hit) {
         } else if (level > 0) {
             --level;
         } else {
-            if (EXACT ? solve_through(march, ivec3(node), there) : step_through(march, ivec3(node), there)) break;
+            if (EXACT ? solve_through(march, ivec3(node), there)
+                      : step_through(march, ivec3(node), there)) break;
             march.t = there;
         }
         if (march.t >= end) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// raymarch: min-max-octree ray marching, the reference that direct is measured against (Kreskowski 2022,
-// section 4). One ray a pixel, in a compute shader or, as in the paper, in a fragment shader.
+// raymarch: min-max-octree ray marching, the reference that direct is measured against (Kreskowski
+// 2022, section 4). One ray a pixel, in a compute shader or, as in the paper, in a fragment shader.
 #include <fmt/format.h>
 #include <isorast/error.h>
 
@@ -37,20 +37,29 @@ Raymarch::Raymarch(const TechniqueContext& context) {
     hardware_ = context.options.rasterizer == Rasterizer::hardware;
     const std::vector<uint32_t> constants{context.options.exact, device.is_cpu() ? 0u : 1u};
     if (!hardware_) {
-        const auto info = context.grid.pipeline_info("march", {Kind::image, Kind::image}, 0, constants);
-        march_ = gpu::Pipeline::compute(device, info, context.grid.pick(march_comp, march_comp_bricked));
+        const auto info =
+            context.grid.pipeline_info("march", {Kind::image, Kind::image}, 0, constants);
+        march_ =
+            gpu::Pipeline::compute(device, info, context.grid.pick(march_comp, march_comp_bricked));
         return;
     }
     if (!device.has_graphics() || !device.features().dynamic_rendering)
-        throw Error(fmt::format("raymarch: {} has no graphics queue with dynamic rendering; use "
-                                "--rasterizer compute", device.info().name));
+        throw Error(
+            fmt::format("raymarch: {} has no graphics queue with dynamic rendering; use "
+                        "--rasterizer compute",
+                        device.info().name));
     const auto info = context.grid.pipeline_info("march", {}, 0, constants);
     const gpu::Shader vertex{VK_SHADER_STAGE_VERTEX_BIT, whole_picture_vert};
     const VkFormat depth = VK_FORMAT_D32_SFLOAT;
-    march_ = gpu::Pipeline::graphics(device, info, {vertex, {VK_SHADER_STAGE_FRAGMENT_BIT, context.grid.pick(march_frag, march_frag_bricked)}},
-                                     {{}, depth});
+    march_ = gpu::Pipeline::graphics(
+        device, info,
+        {vertex, {VK_SHADER_STAGE_FRAGMENT_BIT, context.grid.pick(march_frag, march_frag_bricked)}},
+        {{}, depth});
     march_numbered_ = gpu::Pipeline::graphics(
-        device, info, {vertex, {VK_SHADER_STAGE_FRAGMENT_BIT, context.grid.pick(march_numbered_frag, march_numbered_frag_bricked)}},
+        device, info,
+        {vertex,
+         {VK_SHADER_STAGE_FRAGMENT_BIT,
+          context.grid.pick(march_numbered_frag, march_numbered_frag_bricked)}},
         {{VK_FORMAT_R32_UINT}, depth});
 }
 
