@@ -158,6 +158,10 @@ uint64_t Grid::volume_bytes() const {
     return bytes;
 }
 
+bool Grid::can_filter() const {
+    return !device_.is_cpu();
+}
+
 uint64_t Grid::extra_bytes() const {
     return minmax_.bytes() + info_buffer_.bytes() + frame_buffer_.bytes();
 }

@@ -54,6 +54,9 @@ public:
                                    std::span<const uint32_t> several) const {
         return plan_.one() ? one : several;
     }
+    // False where the texture unit's trilinear filter is too coarse: CPU drivers round its results
+    // for 8-bit voxels to 8 bits.
+    bool can_filter() const;
     // Makes set 0 and gives it to the commands' passes; `frame` becomes the frame's uniform block.
     void begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) const;
     // Rebuilds the min-max pyramid from the bricks.

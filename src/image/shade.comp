@@ -13,11 +13,14 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 1) const bool WRITE_COLOR = true;     // and refine the hit
 layout(constant_id = 2) const bool WRITE_DISTANCE = false;
+layout(constant_id = 3) const bool MARK_VISIBLE = false;   // for occlusion culling in the next frame
 
 layout(set = 1, binding = 0) uniform texture2D depth;
 layout(set = 1, binding = 1) uniform utexture2D surface_numbers;
 layout(set = 1, binding = 2, rgba8) writeonly uniform image2D color;
 layout(set = 1, binding = 3, r32f) writeonly uniform image2D distances;
+#define VISIBLE_BLOCKS_BINDING 4
+#include "shaders/visible_blocks.glsl"
 
 // As Shading in renderer.h.
 const uint GOOCH = 0, PHONG = 1, NORMALS = 2, DEPTH = 3, BLOCKS = 4;
@@ -106,6 +109,7 @@ void main() {
     if (z > 0.0) {
         const Ray ray = pixel_ray(vec2(pixel) + 0.5);
         t = view_depth(z);
+        if (MARK_VISIBLE) mark_visible(cell_of(ray.origin + t * ray.direction));
         if (WRITE_COLOR) {
             const uint number = frame.size.z > 1 ? texelFetch(surface_numbers, pixel, 0).r : 0;
             const Hit hit = refine_hit(ray, t, frame.surfaces[number].w);

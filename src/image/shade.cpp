@@ -7,27 +7,29 @@
 
 namespace isorast {
 
-Shade::Shade(const Grid& grid) {
-    using gpu::Kind;
-    const auto make = [&](bool color, bool distance) {
-        const std::vector bindings{Kind::texture, Kind::texture, Kind::image, Kind::image};
-        return gpu::Pipeline::compute(grid.device(),
-                                      grid.pipeline_info("shade", bindings, 0, {color, distance}),
-                                      grid.pick(shade_comp, shade_comp_bricked));
-    };
-    color_ = make(true, false);
-    color_and_distance_ = make(true, true);
-    distance_ = make(false, true);
+Shade::Shade(const Grid& grid)
+    : grid_(grid), no_blocks_(grid.device(), 4, gpu::Buffer::Memory::device, "shading") {}
+
+const gpu::Pipeline& Shade::pipeline(bool color, bool distance, bool mark) {
+    gpu::Pipeline& pipeline = pipelines_[color + 2 * distance + 4 * mark];
+    if (!pipeline) {
+        using gpu::Kind;
+        const std::vector bindings{Kind::texture, Kind::texture, Kind::image, Kind::image,
+                                   Kind::buffer};
+        pipeline = gpu::Pipeline::compute(
+            grid_.device(), grid_.pipeline_info("shade", bindings, 0, {color, distance, mark}),
+            grid_.pick(shade_comp, shade_comp_bricked));
+    }
+    return pipeline;
 }
 
 void Shade::record(gpu::Commands& commands, const Frame& frame, const Target& target) {
-    const bool forward = frame.shading == Shading::forward;
-    if (forward && !frame.want_depth) return;
+    const bool color = frame.shading != Shading::forward, mark = target.visible_blocks;
+    if (!color && !frame.want_depth && !mark) return;
     const auto pass = commands.pass("shade");
-    commands.bind(forward            ? distance_
-                  : frame.want_depth ? color_and_distance_
-                                     : color_,
-                  {target.depth, target.surfaces, target.color, target.distances});
+    commands.bind(pipeline(color, frame.want_depth, mark),
+                  {target.depth, target.surfaces, target.color, target.distances,
+                   mark ? *target.visible_blocks : no_blocks_});
     commands.dispatch((target.size.width + 7) / 8, (target.size.height + 7) / 8);
     commands.barrier();
 }

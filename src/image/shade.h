@@ -3,6 +3,8 @@
 #pragma once
 #include <isorast/renderer.h>
 
+#include <array>
+
 #include "gpu/commands.h"
 #include "grid/grid.h"
 #include "image/target.h"
@@ -17,7 +19,11 @@ public:
     void record(gpu::Commands& commands, const Frame& frame, const Target& target);
 
 private:
-    gpu::Pipeline color_, color_and_distance_, distance_;
+    const gpu::Pipeline& pipeline(bool color, bool distance, bool mark);
+
+    const Grid& grid_;
+    std::array<gpu::Pipeline, 8> pipelines_;  // made when first needed
+    gpu::Buffer no_blocks_;                   // stands in where nothing is marked
 };
 
 }  // namespace isorast

@@ -21,6 +21,9 @@ struct Target {
     // 1x1 where a frame does not need them: the number of the surface in each pixel, R32_UINT
     // (several surfaces), and its distance, R32_SFLOAT (Frame::want_depth).
     gpu::Texture surfaces, distances;
+    // Where the shading pass marks the blocks that pixels come from, a bit a block; null: nowhere.
+    // Set by techniques that want to know.
+    const gpu::Buffer* visible_blocks = nullptr;
 
     // Makes what is missing or too small. Not while a frame that uses the old images is in flight.
     void fit(const gpu::Device& device, gpu::Commands& commands, const Frame& frame, bool hardware);

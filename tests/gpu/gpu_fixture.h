@@ -14,6 +14,17 @@
 #include "reference/agreement.h"
 #include "reference/scenes.h"
 
+// The width that lavapipe is asked for, in bits; 0 without that setting. Its cache on disk does not
+// know the width and would hand out code made for another one: so it is off, for the whole program.
+inline const int VECTOR_BITS = [] {
+    const char* bits = std::getenv("LP_NATIVE_VECTOR_WIDTH");
+    if (bits) setenv("MESA_SHADER_CACHE_DISABLE", "true", /* overwrite= */ 1);
+    return bits ? std::atoi(bits) : 0;
+}();
+// At 512 bits lavapipe (22.3 and 25.0, with LLVM 15) crashes on every fragment shader: compute
+// only.
+inline const bool GRAPHICS_CRASHES = VECTOR_BITS >= 512;
+
 struct Lane {
     std::string name;
     isorast::RendererOptions options;
@@ -43,6 +54,7 @@ protected:
             std::string refusals;
             size_t before = result.size();
             for (auto rasterizer : {isorast::Rasterizer::hardware, isorast::Rasterizer::compute}) {
+                if (GRAPHICS_CRASHES && rasterizer == isorast::Rasterizer::hardware) continue;
                 options.technique = technique;
                 options.rasterizer = rasterizer;
                 if (!add_lane(volume, options, result, refusals) && options.exact) {
@@ -51,7 +63,8 @@ protected:
                     add_lane(volume, stepping, result, refusals);
                 }
             }
-            EXPECT_TRUE(result.size() > before || !gpu.info().why_not_hardware.empty())
+            EXPECT_TRUE(result.size() > before || GRAPHICS_CRASHES ||
+                        !gpu.info().why_not_hardware.empty())
                 << technique << " refuses:" << refusals;
         }
         EXPECT_FALSE(result.empty());

@@ -6,7 +6,7 @@
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
 #include "shaders/cell_root.glsl"
-#include "techniques/raymarch/march.glsl"
+#include "shaders/march.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -7,7 +7,7 @@
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
 #include "shaders/cell_root.glsl"
-#include "techniques/raymarch/march.glsl"
+#include "shaders/march.glsl"
 
 #ifdef NUMBERED
 layout(location = 0) out uint surface_number;

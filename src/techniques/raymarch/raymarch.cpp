@@ -35,7 +35,8 @@ private:
 Raymarch::Raymarch(const TechniqueContext& context) {
     const gpu::Device& device = context.grid.device();
     hardware_ = context.options.rasterizer == Rasterizer::hardware;
-    const std::vector<uint32_t> constants{context.options.exact, device.is_cpu() ? 0u : 1u};
+    const std::vector<uint32_t> constants{context.options.exact,
+                                          context.grid.can_filter() ? 1u : 0u};
     if (!hardware_) {
         const auto info =
             context.grid.pipeline_info("march", {Kind::image, Kind::image}, 0, constants);

@@ -1,0 +1,49 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Workgroup: 64x64 pixels. Thread: 4x4 of them. Out: the farthest depth (least: depth is reversed)
+// of squares of 2 to 64 pixels.
+#include "shaders/scene.glsl"
+#include "techniques/direct/pyramid.glsl"
+
+layout(local_size_x = 16, local_size_y = 16) in;
+
+layout(set = 1, binding = 0) uniform texture2D depth;
+layout(set = 1, binding = 1, std430) writeonly buffer Pyramid { float pyramid[]; };
+
+shared float farthest[16][16];
+
+// Pixels outside the picture hide nothing and show nothing: as near as can be.
+float depth_at(uvec2 pixel) {
+    return all(lessThan(pixel, frame.size.xy)) ? texelFetch(depth, ivec2(pixel), 0).r : 1.0;
+}
+
+void store(uint level, uvec2 square, float value) {
+    const uvec2 size = pyramid_size(level);
+    if (all(lessThan(square, size)))
+        pyramid[pyramid_offset(level) + square.x + size.x * square.y] = value;
+}
+
+void main() {
+    const uvec2 thread = gl_LocalInvocationID.xy, corner = 4 * gl_GlobalInvocationID.xy;
+    float least = 1.0;
+    for (uint i = 0; i < 4; ++i) {
+        const uvec2 pixel = corner + 2 * uvec2(i & 1, i >> 1);
+        const float value = min(min(depth_at(pixel), depth_at(pixel + uvec2(1, 0))),
+                                min(depth_at(pixel + uvec2(0, 1)), depth_at(pixel + uvec2(1, 1))));
+        store(1, pixel / 2, value);
+        least = min(least, value);
+    }
+    store(2, gl_GlobalInvocationID.xy, least);
+    farthest[thread.y][thread.x] = least;
+    for (uint level = 3; level <= PYRAMID_LEVELS; ++level) {
+        // Squares of this level are threads whose coordinates are multiples of `step`.
+        const uint step = 1u << (level - 2), half_step = step / 2;
+        barrier();
+        if (any(notEqual(thread % step, uvec2(0)))) continue;
+        least = min(min(farthest[thread.y][thread.x], farthest[thread.y][thread.x + half_step]),
+                    min(farthest[thread.y + half_step][thread.x],
+                        farthest[thread.y + half_step][thread.x + half_step]));
+        farthest[thread.y][thread.x] = least;
+        store(level, gl_GlobalInvocationID.xy / step, least);
+    }
+}

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// Lists of blocks: active ones an isovalue, drawn ones a frame.
+#include "techniques/direct/culling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "build_pyramid_comp.h"
+#include "cull_comp.h"
+#include "find_active_comp.h"
+#include "find_first_visible_comp.h"
+
+namespace isorast {
+
+namespace {
+
+using gpu::Commands;
+using gpu::Kind;
+using Memory = gpu::Buffer::Memory;
+
+// Most workgroups along one axis of a dispatch that every device allows.
+constexpr uint32_t MAX_ROW = 65535;
+constexpr uint32_t ZERO = 0;
+
+// With fewer blocks than this (a volume of 256^3), guessing what is visible after a cut costs more
+// than drawing all blocks once.
+constexpr uint32_t WORTH_GUESSING = 1 << 15;
+
+// A turn or a way beyond which the last frame's visible blocks say little about this frame's.
+constexpr double CUT_DEGREES = 15, CUT_DISTANCE = 0.25;  // of the distance to the target
+
+glm::dvec3 to_vec(const std::array<double, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+uint64_t pyramid_bytes(Size size) {
+    uint64_t squares = 0;
+    for (uint32_t level = 1; level <= 6; ++level) {
+        const uint32_t side = 1u << level;
+        squares += uint64_t{(size.width + side - 1) / side} * ((size.height + side - 1) / side);
+    }
+    return sizeof(float) * squares;
+}
+
+}  // namespace
+
+Culling::Culling(const Grid& grid) : grid_(grid) {
+    const gpu::Device& device = grid.device();
+    const uint32_t groups = grid.info().groups.w;
+    chunks_ = (groups + shared::CHUNK_GROUPS - 1) / shared::CHUNK_GROUPS;
+    drawn_blocks_ = gpu::Buffer(device, uint64_t{2} * shared::GROUP_BLOCKS * groups, Memory::device,
+                                "the list of drawn blocks");
+    const uint64_t draw_bytes = chunks_ * sizeof(VkDrawMeshTasksIndirectCommandEXT);
+    draws_ = gpu::Buffer(device, draw_bytes, Memory::device, "draw arguments");
+    empty_draws_ = gpu::Buffer(device, draw_bytes, Memory::host, "draw arguments");
+    for (uint32_t i = 0; i < chunks_; ++i)
+        empty_draws_.data<VkDrawMeshTasksIndirectCommandEXT>()[i] = {0, 2, 1};
+    counters_ = gpu::Buffer(device, sizeof(shared::Counters), Memory::device, "counters");
+    for (gpu::Buffer& visible : visible_)
+        visible = gpu::Buffer(device, uint64_t{4} * groups, Memory::device, "visible blocks");
+
+    const auto make = [&](const char* name, std::vector<Kind> bindings, uint32_t push_bytes,
+                          std::vector<uint32_t> constants, std::span<const uint32_t> spirv) {
+        return gpu::Pipeline::compute(
+            device, grid.pipeline_info(name, std::move(bindings), push_bytes, std::move(constants)),
+            spirv);
+    };
+    find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
+    const std::vector lists(6, Kind::buffer);
+    for (uint32_t which = 0; which < select_.size(); ++which)
+        select_[which] = make("cull", lists, 0, {which}, cull_comp);
+    build_pyramid_ =
+        make("depth pyramid", {Kind::texture, Kind::buffer}, 0, {}, build_pyramid_comp);
+    const uint32_t filtered = grid.can_filter() ? 1 : 0;
+    if (grid.info().blocks.w >= WORTH_GUESSING)
+        find_first_visible_ =
+            make("find first visible", {Kind::buffer}, 0, {/* EXACT= */ 0, filtered},
+                 grid.pick(find_first_visible_comp, find_first_visible_comp_bricked));
+}
+
+uint64_t Culling::gpu_bytes() const {
+    uint64_t bytes =
+        drawn_blocks_.bytes() + 2 * draws_.bytes() + counters_.bytes() + 2 * visible_[0].bytes();
+    for (const auto& list : active_groups_)
+        bytes += list.bytes();
+    return bytes;
+}
+
+void Culling::find_active(Commands& commands, const std::vector<float>& isovalues) {
+    const auto pass = commands.pass("find active");
+    const uint64_t list_bytes = 16 + uint64_t{8} * grid_.info().groups.w;
+    while (active_groups_.size() < isovalues.size())
+        active_groups_.emplace_back(grid_.device(), list_bytes, Memory::device,
+                                    "the list of active blocks");
+    commands.fill(counters_, 0);
+    const std::array<uint32_t, 4> empty{0, 1, 1, 0};  // dispatch arguments and count
+    for (uint32_t i = 0; i < isovalues.size(); ++i)
+        commands.update(active_groups_[i], 0, empty.data(), sizeof(empty));
+    commands.barrier();
+    for (uint32_t i = 0; i < isovalues.size(); ++i)
+        find_active(commands, i, isovalues[i]);
+    commands.barrier();
+}
+
+void Culling::find_active(Commands& commands, uint32_t surface, float isovalue) {
+    struct Push {
+        float isovalue;
+        uint32_t groups_in_row;
+    };
+    const uint32_t workgroups = (grid_.info().groups.w + 3) / 4;
+    const uint32_t row = std::min(workgroups, MAX_ROW);
+    commands.bind(find_active_, {active_groups_[surface], counters_});
+    commands.push(Push{isovalue, row});
+    commands.dispatch(row, (workgroups + row - 1) / row);
+}
+
+bool Culling::is_cut(const Camera& camera) const {
+    if (!last_camera_ || camera.orthographic != last_camera_->orthographic) return true;
+    const glm::dvec3 now = to_vec(camera.target) - to_vec(camera.position);
+    const glm::dvec3 before = to_vec(last_camera_->target) - to_vec(last_camera_->position);
+    const double moved = glm::length(to_vec(camera.position) - to_vec(last_camera_->position));
+    const double cosine = glm::dot(glm::normalize(now), glm::normalize(before));
+    return cosine < std::cos(glm::radians(CUT_DEGREES)) ||
+           moved > CUT_DISTANCE * std::max(glm::length(now), glm::length(before));
+}
+
+void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target) {
+    commands.update(counters_, offsetof(shared::Counters, blocks_drawn), &ZERO, sizeof(ZERO));
+    target.visible_blocks = frame.culling ? &visible_[seen_] : nullptr;
+    if (!frame.culling) return;
+    // What was marked last is seen now; the other set is cleared and marked next.
+    seen_ = 1 - seen_;
+    target.visible_blocks = &visible_[1 - seen_];
+    commands.fill(visible_[1 - seen_], 0);
+    if (pyramid_.bytes() != pyramid_bytes(frame.size))
+        pyramid_ = gpu::Buffer(grid_.device(), pyramid_bytes(frame.size), Memory::device,
+                               "the depth pyramid");
+    const bool cut = is_cut(frame.camera);
+    last_camera_ = frame.camera;
+    if (cut) {
+        commands.fill(visible_[seen_], 0);
+        commands.barrier();
+    }
+    if (cut && find_first_visible_) {
+        const auto pass = commands.pass("find first visible");
+        commands.bind(find_first_visible_, {visible_[seen_]});
+        commands.dispatch((frame.size.width + 31) / 32, (frame.size.height + 31) / 32);
+    }
+    commands.barrier();
+}
+
+void Culling::select(Commands& commands, uint32_t surface, Select which) {
+    commands.copy(empty_draws_, 0, draws_, 0, draws_.bytes());
+    commands.barrier();
+    commands.bind(select_[size_t(which)],
+                  {active_groups_[surface], draws_, drawn_blocks_, counters_, visible_[seen_],
+                   pyramid_ ? gpu::Binding(pyramid_) : counters_});
+    commands.dispatch_indirect(active_groups_[surface], 0);
+    commands.barrier();
+}
+
+void Culling::build_pyramid(Commands& commands, const Target& target) {
+    const auto pass = commands.pass("depth pyramid");
+    commands.bind(build_pyramid_, {target.depth, pyramid_});
+    commands.dispatch((target.size.width + 63) / 64, (target.size.height + 63) / 64);
+    commands.barrier();
+}
+
+}  // namespace isorast

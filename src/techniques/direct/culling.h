@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Which blocks to extract: those that the isovalue crosses, in the frustum, and not hidden behind
+// others (Kreskowski 2022, section 3.5). All on the GPU, all in compute, for any rasterizer.
+#pragma once
+#include <array>
+#include <optional>
+
+#include "gpu/commands.h"
+#include "grid/grid.h"
+#include "image/target.h"
+
+namespace isorast {
+
+class Culling {
+public:
+    explicit Culling(const Grid& grid);
+
+    // The active groups of each surface: once an isovalue.
+    void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
+
+    // Once a frame, before select(). The blocks marked visible in the last frame become the seen
+    // ones; after a cut, a coarse march guesses them in large volumes. The shading pass marks this
+    // frame's in target.visible_blocks.
+    void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
+    enum class Select : uint32_t { all, seen, unseen };
+    // Lists a surface's blocks in drawn_blocks() and counts them in draws().
+    void select(gpu::Commands& commands, uint32_t surface, Select which);
+    // What select(unseen) tests against: from the depth drawn so far.
+    void build_pyramid(gpu::Commands& commands, const Target& target);
+
+    // A chunk is 32768 blocks: entry e of chunk c, a block's 16-bit place in the chunk, is at
+    // [c * 32768 + e].
+    const gpu::Buffer& drawn_blocks() const { return drawn_blocks_; }
+    const gpu::Buffer& draws() const {
+        return draws_;
+    }  // VkDrawMeshTasksIndirectCommandEXT a chunk
+    uint32_t chunks() const { return chunks_; }
+    const gpu::Buffer& counters() const { return counters_; }
+    uint64_t gpu_bytes() const;
+
+private:
+    void find_active(gpu::Commands& commands, uint32_t surface, float isovalue);
+    bool is_cut(const Camera& camera) const;
+
+    const Grid& grid_;
+    uint32_t chunks_ = 0;
+    gpu::Pipeline find_active_, find_first_visible_, build_pyramid_;
+    std::array<gpu::Pipeline, 3> select_;     // one for each Select
+    std::vector<gpu::Buffer> active_groups_;  // one for each surface
+    gpu::Buffer drawn_blocks_, draws_, empty_draws_, counters_;
+    std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
+    uint32_t seen_ = 0;                   // which of the two is last frame's
+    std::optional<Camera> last_camera_;   // of the frame that marked visible blocks
+    gpu::Buffer pyramid_;
+};
+
+}  // namespace isorast

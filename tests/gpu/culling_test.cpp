@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Occlusion culling is conservative: along any way of the camera, and any change of the isovalue,
+// each frame with culling has the depth and colours of that frame without, bit for bit; and it does
+// cull.
+#include <cstring>
+#include <random>
+
+#include "gpu/gpu_fixture.h"
+
+namespace {
+
+using namespace isorast;
+
+// A camera on a walk: slow steps mostly, now and then a jump, and sometimes into the volume.
+class Walk {
+public:
+    explicit Walk(const Volume& volume) : volume_(volume) {}
+
+    Camera step() {
+        const double kind = uniform(0, 1);
+        if (kind < 0.1) {
+            azimuth_ = uniform(0, 360);
+            elevation_ = uniform(-80, 80);
+        }
+        azimuth_ += uniform(-4, 4);
+        elevation_ += uniform(-3, 3);
+        Camera camera = orbit(volume_, azimuth_, elevation_,
+                              {.zoom = kind > 0.8 ? 3.0 : 1.0, .orthographic = kind > 0.95});
+        if (kind > 0.1 && kind < 0.25)  // most of the way to the middle: the eye is inside
+            for (int i = 0; i < 3; ++i)
+                camera.position[i] += 0.85 * (camera.target[i] - camera.position[i]);
+        return camera;
+    }
+    double uniform(double low, double high) {
+        return std::uniform_real_distribution(low, high)(random_);
+    }
+
+private:
+    const Volume& volume_;
+    std::mt19937 random_{7};
+    double azimuth_ = 30, elevation_ = 20;
+};
+
+bool same_bits(const Image& a, const Image& b) {
+    return a.rgba == b.rgba &&
+           std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * sizeof(float)) == 0;
+}
+
+TEST_F(GpuTest, OcclusionCullingChangesNoBitOnAnyWalk) {
+    if (GRAPHICS_CRASHES) GTEST_SKIP();
+    const Volume volume = reference::sampled("noise:56:octaves=3:type=u8");
+    Renderer culled(gpu, volume), whole(gpu, volume);
+    Walk walk(volume);
+    const int frames = std::getenv("ISORAST_QUICK") ? 60 : 500;
+    uint64_t drawn_culled = 0, drawn_whole = 0;
+    double isovalue = 0.5;
+    for (int i = 0; i < frames; ++i) {
+        if (i % 7 == 0) isovalue = walk.uniform(0.35, 0.65);
+        Frame f = frame(walk.step(), {isovalue});
+        f.size = {160, 120};
+        const Image a = culled.render(f);
+        f.culling = false;
+        ASSERT_TRUE(same_bits(a, whole.render(f))) << "frame " << i;
+        drawn_culled += culled.stats().blocks_drawn;
+        drawn_whole += whole.stats().blocks_drawn;
+    }
+    if (culled.technique() == "direct") {
+        EXPECT_LT(drawn_culled, drawn_whole * 9 / 10);
+    }
+}
+
+TEST_F(GpuTest, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
+    if (GRAPHICS_CRASHES) GTEST_SKIP();
+    const Volume volume = make_procedural("noise:256:type=u8");
+    Renderer culled(gpu, volume), whole(gpu, volume);
+    Frame f = frame(orbit(volume, 30, 20), {0.5});
+    f.size = {960, 540};
+    const Image cold = culled.render(f);
+    const uint64_t drawn_cold = culled.stats().blocks_drawn;
+    const Image warm = culled.render(f);
+    const uint64_t drawn_warm = culled.stats().blocks_drawn;
+    f.culling = false;
+    const Image expected = whole.render(f);
+    EXPECT_TRUE(same_bits(cold, expected));
+    EXPECT_TRUE(same_bits(warm, expected));
+    if (culled.technique() == "direct") {
+        EXPECT_LT(drawn_cold, whole.stats().blocks_drawn);
+        EXPECT_LT(drawn_warm, drawn_cold * 9 / 10);
+    }
+}
+
+TEST_F(GpuTest, CullingHoldsForForwardShadingAndSeveralSurfaces) {
+    if (GRAPHICS_CRASHES) GTEST_SKIP();
+    const Volume volume = reference::sampled("noise:48:octaves=3:type=u8");
+    Renderer culled(gpu, volume), whole(gpu, volume);
+    Walk walk(volume);
+    for (int i = 0; i < 20; ++i) {
+        Frame f = frame(walk.step(), {0.45, 0.6});
+        f.size = {160, 120};
+        if (i % 2 && culled.technique() == "direct") {
+            f.shading = Shading::forward;
+            f.isovalues = {0.5};
+        }
+        const Image a = culled.render(f);
+        f.culling = false;
+        ASSERT_TRUE(same_bits(a, whole.render(f))) << "frame " << i;
+    }
+}
+
+}  // namespace
