@@ -90,10 +90,13 @@ GridPlan plan_grid(const gpu::Device& device, const Volume& volume, uint32_t max
                                                : VK_FORMAT_R32_SFLOAT,
                         .bits = uint32_t(8 * bytes)};
     GridPlan plan{.bricks = plan_for(device, volume, stored, max_brick_side)};
-    if (plan.bricks.count() <= shared::MAX_BRICKS)
+    plan.volume_bytes = volume.voxel_count() * stored.bytes();
+    if (plan.bricks.count() <= shared::MAX_BRICKS) {
+        plan.volume_bytes = 0;
         for (uint32_t i = 0; i < plan.bricks.count(); ++i)
             plan.volume_bytes += gpu::Texture::bytes_needed(
                 device, brick_image(plan.bricks, i, stored.format, false));
+    }
     plan.minmax_bytes = minmax_bytes(make_info(plan.bricks), stored);
     return plan;
 }

@@ -212,18 +212,20 @@ std::string what_does_not_fit(const Gpu& gpu, const Volume& volume,
                               const RendererOptions& options) {
     const gpu::Device& device = gpu.device();
     const GridPlan plan = plan_grid(device, volume, options.max_brick_side);
+    const uint64_t needed = plan.volume_bytes + 2 * plan.minmax_bytes;
+    const uint64_t has = device.info().memory_bytes;
+    const auto gib = [](uint64_t bytes) { return double(bytes) / double(1 << 30); };
+    const std::string needs =
+        fmt::format("{}: needs {:.2f} GiB on {}", volume.name, gib(needed), device.info().name);
+    if (needed > has)
+        return fmt::format(
+            "{}, {:.2f} GiB more than its {:.2f} GiB; use another device or a smaller volume",
+            needs, gib(needed - has), gib(has));
     if (plan.bricks.count() > shared::MAX_BRICKS)
-        return fmt::format("{}: needs {} bricks on {}, {} more than fit", volume.name,
-                           plan.bricks.count(), device.info().name,
-                           plan.bricks.count() - shared::MAX_BRICKS);
-    const uint64_t needed = plan.volume_bytes + 2 * plan.minmax_bytes,
-                   has = device.info().memory_bytes;
-    if (needed <= has) return "";
-    return fmt::format(
-        "{}: needs {:.2f} GiB on {}, {:.2f} GiB more than its {:.2f} GiB; use another device "
-        "or a smaller volume",
-        volume.name, double(needed) / (1 << 30), device.info().name,
-        double(needed - has) / (1 << 30), double(has) / (1 << 30));
+        return fmt::format(
+            "{} in {} bricks, {} more than fit; use another device or a smaller volume", needs,
+            plan.bricks.count(), plan.bricks.count() - shared::MAX_BRICKS);
+    return "";
 }
 
 }  // namespace isorast

@@ -13,7 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 1) const bool WRITE_COLOR = true;     // and refine the hit
 layout(constant_id = 2) const bool WRITE_DISTANCE = false;
-layout(constant_id = 3) const bool MARK_VISIBLE = false;   // for occlusion culling in the next frame
+layout(constant_id = 3) const bool MARK_VISIBLE = false;   // for the next frame's culling
 
 layout(set = 1, binding = 0) uniform texture2D depth;
 layout(set = 1, binding = 1) uniform utexture2D surface_numbers;

@@ -31,7 +31,7 @@ ISORAST_CONSTANT uint GROUP_X = 4, GROUP_Y = 4, GROUP_Z = 2, GROUP_BLOCKS = 32;
 ISORAST_CONSTANT uint CHUNK_GROUPS = 1024, CHUNK_BLOCKS = 32768;
 // Most workgroups that one list-driven dispatch starts; they loop over longer lists.
 ISORAST_CONSTANT uint MAX_LIST_GROUPS = 32768;
-ISORAST_CONSTANT uint MAX_LEVELS = 12;  // of the min-max pyramid: volumes up to 16384 voxels a side
+ISORAST_CONSTANT uint MAX_LEVELS = 30;  // of the min-max pyramid: any number of blocks a side
 ISORAST_CONSTANT uint MAX_BRICKS = 64;
 ISORAST_CONSTANT uint MAX_SURFACES = 32;  // opaque surfaces in one picture
 

@@ -61,6 +61,26 @@ TEST_F(GpuTest, AVolumeOneVoxelThinIsEmptyAndTwoIsNot) {
     }
 }
 
+// More bricks than one, and a pyramid of 13 levels.
+TEST_F(GpuTest, AVeryLongVolume) {
+    Volume volume = volume_of<uint8_t>(
+        {20000, 3, 3}, VoxelType::u8,
+        [](uint32_t i, uint32_t j, uint32_t k) { return (i / 4 * 37 + 60 * j + 20 * k) % 256; });
+    Frame f = frame(orbit(volume, 10, 30, {.zoom = 400}), {100.0});
+    std::vector<Lane> all = lanes(volume);
+    const Image first = all.front().renderer.render(f);
+    for (Lane& lane : all) {
+        const Image other = lane.renderer.render(f);
+        uint64_t hits = 0, differ = 0;
+        for (size_t i = 0; i < first.depth.size(); ++i) {
+            hits += std::isfinite(first.depth[i]);
+            differ += std::isfinite(first.depth[i]) != std::isfinite(other.depth[i]);
+        }
+        EXPECT_GT(hits, 200u) << lane.name;
+        EXPECT_LE(differ, hits / 20) << lane.name;
+    }
+}
+
 TEST_F(GpuTest, TheSmallestVolumes) {
     for (std::array<uint32_t, 3> dims : {std::array<uint32_t, 3>{1, 1, 1}, {2, 1, 1}, {2, 2, 2}}) {
         Volume volume = volume_of<uint8_t>(dims, VoxelType::u8,
