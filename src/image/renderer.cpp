@@ -32,9 +32,10 @@ std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
         fmt::format("technique: expected one of {}, found '{}'", known, context.options.technique));
 }
 
-const Volume& checked(const Volume& volume) {
+// Checks the volume before anything is made from it.
+Placement place(const Volume& volume) {
     check(volume);
-    return volume;
+    return {volume.affine, volume.dims};
 }
 
 }  // namespace
@@ -42,8 +43,8 @@ const Volume& checked(const Volume& volume) {
 Renderer::State::State(Gpu& gpu, const Volume& volume, const RendererOptions& options)
     : device_(gpu.device()),
       options_(resolved(gpu, options)),
-      placement_{volume.affine, volume.dims},
-      grid_(device_, checked(volume), options.max_brick_side),
+      placement_(place(volume)),
+      grid_(device_, volume, options.max_brick_side),
       technique_(make_technique({grid_, options_})),
       shade_(grid_) {
     for (uint32_t i = 0; i < std::max(options.frames_in_flight, 1u); ++i)
