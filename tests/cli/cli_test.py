@@ -312,7 +312,7 @@ class Render(CommandLine):
 
     def test_what_does_not_fit(self):
         _, err = self.render("sphere:600", "--max-brick-side", "35", code=1)
-        self.assertRegex(err, r"\Aisorast: error: sphere:600: needs \d+ bricks on .+ more than fit\n\Z")
+        self.assertRegex(err, r"\Aisorast: error: sphere:600: needs [0-9.]+ GiB on .+ in \d+ bricks, \d+ more than fit; .+\n\Z")
 
     def test_errors(self):
         for words in [["none.raw"], ["sphere:16", "-o", "no/such/folder.png"], ["sphere:16", "--device", "none"],
