@@ -209,6 +209,10 @@ struct Render : Command {
             throw CLI::ValidationError("--json",
                                        "standard output takes the picture; name a file with -o");
         }
+        if (view.stereo.mode == StereoMode::layers && (output == "-" || !reference.empty()))
+            throw CLI::ValidationError("--stereo",
+                                       "layers makes two files: name them with -o, and "
+                                       "compare them with isorast compare");
         if (transparent) frame.background.a = 0;
 
         const Volume volume = load_volume(arguments.input, arguments.load);
@@ -220,6 +224,8 @@ struct Render : Command {
                 "--color", fmt::format("{} colors for {} isovalues", frame.colors.size(),
                                        frame.isovalues.size()));
         }
+        frame.clips = view.clip_planes(volume);
+        frame.stereo = view.stereo;
         view.camera(volume, {});  // a side that this volume does not have is said at once
         note_what_is_special(volume);
 
@@ -292,11 +298,25 @@ struct Render : Command {
             {"Software", "isorast"},
             {"Source", std::filesystem::path(volume.name).filename().string()},
             {"Comment", fmt::format("isovalue {:.9g}", fmt::join(frame.isovalues, ", "))}};
+        if (view.stereo.mode == StereoMode::layers) return write_layers(image, text);
         if (output != "-") return write_png(output, image, text);
         const std::vector<uint8_t> bytes = encode_png(image, text);
         if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
             std::fflush(stdout)) {
             throw Error("standard output: the picture cannot be written");
+        }
+    }
+
+    // picture.png: picture.left.png and picture.right.png.
+    void write_layers(const Image& image,
+                      const std::vector<std::pair<std::string, std::string>>& text) const {
+        const size_t half = image.rgba.size() / 2;
+        for (const auto& [name, begin] :
+             {std::pair{".left.png", size_t{0}}, {".right.png", half}}) {
+            const auto first = image.rgba.begin() + ptrdiff_t(begin);
+            const Image eye{.size = {image.size.width, image.size.height / 2},
+                            .rgba = {first, first + ptrdiff_t(half)}};
+            write_png(std::filesystem::path(output).replace_extension(name).string(), eye, text);
         }
     }
 

@@ -25,7 +25,8 @@ struct HostDevice {
 };
 
 // Where a recorded frame's picture will be once the command buffer has run. Images stay in GENERAL
-// layout, belong to the Renderer, and are overwritten by the next recorded frame.
+// layout, belong to the Renderer, and are overwritten by the next recorded frame. In stereo they
+// have two layers, the left eye's first, and the views are arrays.
 struct RecordedFrame {
     VkImage color = VK_NULL_HANDLE;  // R8G8B8A8_UNORM, sRGB-encoded, straight alpha
     VkImageView color_view = VK_NULL_HANDLE;

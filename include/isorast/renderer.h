@@ -7,6 +7,7 @@
 #include <isorast/volume.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,16 @@ namespace isorast {
 enum class Rasterizer : uint8_t { automatic, hardware, compute };
 enum class Shading : uint8_t { gooch, phong, normals, depth, blocks, forward };
 
+// Two eyes: both pictures beside each other, twice as wide; red-cyan in one picture; or, for those
+// who show them otherwise, the left eye's picture above the right eye's, twice as high.
+enum class StereoMode : uint8_t { off, side_by_side, anaglyph, layers };
+
 std::string_view name_of(Rasterizer rasterizer);
 std::string_view name_of(Shading shading);
+std::string_view name_of(StereoMode mode);
 std::optional<Rasterizer> parse_rasterizer(std::string_view word);
 std::optional<Shading> parse_shading(std::string_view word);
+std::optional<StereoMode> parse_stereo(std::string_view word);
 
 struct RendererOptions {
     // One of techniques(); "auto": direct where the device has mesh shaders, else raymarch.
@@ -33,16 +40,35 @@ struct Color {
     float r = 0, g = 0, b = 0, a = 1;  // sRGB, 0 to 1
 };
 
+// Keeps the points p of the surface with dot(normal, p) >= offset, world coordinates.
+struct ClipPlane {
+    std::array<double, 3> normal{1, 0, 0};
+    double offset = 0;
+};
+
+// Two eyes that look the same way, to the left and right of the camera's position: their frusta are
+// sheared so that what lies at the distance of convergence shows no parallax.
+struct Stereo {
+    StereoMode mode = StereoMode::off;
+    // World units. By default the eyes converge at the camera's target, and are a 30th of the
+    // distance of convergence apart: the usual limit for comfort.
+    std::optional<double> separation{}, convergence{};
+};
+
 struct Frame {
     std::vector<double> isovalues{};  // data units; at most MAX_SURFACES (32) opaque surfaces
     std::vector<Color>
         colors{};  // one for each isovalue; the default palette fills up what is missing
     Camera camera{};
-    Size size{};
+    Size size{};                     // of one eye's picture
+    std::vector<ClipPlane> clips{};  // at most MAX_CLIPS (8)
+    Stereo stereo{};
     Shading shading = Shading::gooch;
     Color background{1, 1, 1, 1};  // alpha 0: transparent
     bool culling = true;  // frustum culling (and occlusion culling where the technique has it)
     bool want_depth = false;
+
+    uint32_t eyes() const { return stereo.mode == StereoMode::off ? 1 : 2; }
 };
 
 struct PassTime {

@@ -52,7 +52,7 @@ VkImage create_image(const Device& device, const ImageInfo& info) {
                                    .format = info.format,
                                    .extent = info.extent,
                                    .mipLevels = 1,
-                                   .arrayLayers = 1,
+                                   .arrayLayers = info.layers,
                                    .samples = VK_SAMPLE_COUNT_1_BIT,
                                    .tiling = VK_IMAGE_TILING_OPTIMAL,
                                    .usage = info.usage};
@@ -71,17 +71,27 @@ Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
     bytes_ = requirements.size;
     memory_ = device.allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, what);
     VK_CHECK(vkBindImageMemory(device.handle(), image_, memory_, 0));
-    const VkImageViewCreateInfo view{
-        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-        .image = image_,
-        .viewType = info.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
-        .format = info.format,
-        .subresourceRange = {aspect(), 0, 1, 0, 1}};
-    VK_CHECK(vkCreateImageView(device.handle(), &view, nullptr, &view_));
+    view_ =
+        make_view(info.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D_ARRAY, 0, info.layers);
+    for (uint32_t layer = 0; !info.is_3d && layer < info.layers; ++layer)
+        layer_views_.at(layer) = make_view(VK_IMAGE_VIEW_TYPE_2D, layer, 1);
+}
+
+VkImageView Texture::make_view(VkImageViewType type, uint32_t layer, uint32_t layers) const {
+    const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                     .image = image_,
+                                     .viewType = type,
+                                     .format = info_.format,
+                                     .subresourceRange = {aspect(), 0, 1, layer, layers}};
+    VkImageView view = VK_NULL_HANDLE;
+    VK_CHECK(vkCreateImageView(device_->handle(), &info, nullptr, &view));
+    return view;
 }
 
 Texture::~Texture() {
     if (!device_) return;
+    for (VkImageView view : layer_views_)
+        vkDestroyImageView(device_->handle(), view, nullptr);
     vkDestroyImageView(device_->handle(), view_, nullptr);
     vkDestroyImage(device_->handle(), image_, nullptr);
     vkFreeMemory(device_->handle(), memory_, nullptr);
@@ -104,6 +114,7 @@ void Texture::swap(Texture& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(image_, other.image_);
     std::swap(view_, other.view_);
+    std::swap(layer_views_, other.layer_views_);
     std::swap(memory_, other.memory_);
     std::swap(info_, other.info_);
     std::swap(bytes_, other.bytes_);

@@ -4,6 +4,7 @@
 #pragma once
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -51,6 +52,7 @@ struct ImageInfo {
     VkExtent3D extent{1, 1, 1};
     VkImageUsageFlags usage = 0;
     bool is_3d = false;
+    uint32_t layers = 1;  // of a 2D image, which is an array to all shaders; at most 2
 };
 
 class Texture {
@@ -68,7 +70,9 @@ public:
     static uint64_t bytes_needed(const Device& device, const ImageInfo& info);
 
     VkImage handle() const { return image_; }
-    VkImageView view() const { return view_; }
+    VkImageView view() const { return view_; }  // of a volume, or an array of all layers
+    VkImageView layer_view(uint32_t layer) const { return layer_views_.at(layer); }  // a 2D image
+    uint32_t layers() const { return info_.layers; }
     VkFormat format() const { return info_.format; }
     VkExtent3D extent() const { return info_.extent; }
     VkImageAspectFlags aspect() const;
@@ -76,10 +80,12 @@ public:
     explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
 private:
+    VkImageView make_view(VkImageViewType type, uint32_t layer, uint32_t layers) const;
     void swap(Texture& other) noexcept;
     const Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
     VkImageView view_ = VK_NULL_HANDLE;
+    std::array<VkImageView, 2> layer_views_{};
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
     ImageInfo info_;
     uint64_t bytes_ = 0;

@@ -8,6 +8,7 @@
 
 #include "gpu/device.h"
 #include "image/state.h"
+#include "image/stereo.h"
 
 namespace isorast {
 
@@ -122,12 +123,15 @@ RecordedFrame Renderer::State::record_for_host(VkCommandBuffer handle, const Fra
     host_slots_[slot]->reset();
     gpu::Commands commands(device_, handle, *host_slots_[slot]);
     record(commands, frame);
-    return {target_.color.handle(), target_.color.view(), target_.depth.handle(),
-            target_.depth.view(), target_.depth.format()};
+    const auto view = [&](const gpu::Texture& texture) {
+        return target_.eyes == 1 ? texture.layer_view(0) : texture.view();
+    };
+    return {target_.color.handle(), view(target_.color), target_.depth.handle(),
+            view(target_.depth), target_.depth.format()};
 }
 
 void Renderer::State::fit_readback(const Frame& frame) {
-    const uint64_t bytes = uint64_t{4} * frame.size.width * frame.size.height;
+    const uint64_t bytes = uint64_t{4} * frame.size.width * frame.size.height * frame.eyes();
     const auto fit = [&](gpu::Buffer& buffer) {
         if (buffer.bytes() != bytes)
             buffer =
@@ -138,15 +142,15 @@ void Renderer::State::fit_readback(const Frame& frame) {
 }
 
 Image Renderer::State::read_back(const Frame& frame) const {
-    Image image{.size = frame.size};
-    const size_t pixels = size_t{frame.size.width} * frame.size.height;
+    Image image{.size = {frame.size.width, frame.size.height * frame.eyes()}};
+    const size_t pixels = size_t{image.size.width} * image.size.height;
     image.rgba.resize(4 * pixels);
     std::memcpy(image.rgba.data(), color_readback_.data<uint8_t>(), image.rgba.size());
     if (frame.want_depth) {
         image.depth.resize(pixels);
         std::memcpy(image.depth.data(), depth_readback_.data<float>(), 4 * pixels);
     }
-    return image;
+    return frame.eyes() == 1 ? image : arrange(std::move(image), frame.stereo.mode);
 }
 
 void Renderer::State::collect_stats(const gpu::Slot& slot) {

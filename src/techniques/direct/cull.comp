@@ -6,6 +6,7 @@
 // frame saw are drawn first; then those of all others that they do not hide.
 #include "shaders/scene.glsl"
 #include "techniques/direct/list.glsl"
+#include "techniques/direct/frustum.glsl"
 #include "techniques/direct/pyramid.glsl"
 
 layout(local_size_x = 32) in;
@@ -30,24 +31,14 @@ layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; 
 shared uint drawn_mask;
 shared uint first_entry;
 
-// True unless the whole block lies outside one plane of the frustum.
-bool in_frustum(vec3 low, vec3 high) {
-    for (int i = 0; i < 6; ++i) {
-        const vec4 plane = frame.planes[i];
-        const vec3 farthest = mix(low, high, greaterThan(plane.xyz, vec3(0.0)));
-        if (dot(plane.xyz, farthest) + plane.w < 0.0) return false;
-    }
-    return true;
-}
-
 // True if depth already drawn is nearer than all of the block, at every pixel that the block can
 // touch.
-bool is_hidden(vec3 low, vec3 high) {
+bool is_hidden(uint eye, vec3 low, vec3 high) {
     vec2 least = vec2(1e9), greatest = vec2(-1e9);
     float nearest = 0.0;
     for (int c = 0; c < 8; ++c) {
         const vec3 corner = mix(low, high, vec3(c & 1, c >> 1 & 1, c >> 2));
-        const vec4 clip = frame.clip_from_voxel * vec4(corner, 1.0);
+        const vec4 clip = frame.eyes[eye].clip_from_voxel * vec4(corner, 1.0);
         if (clip.w <= 0.0 || clip.z >= clip.w) return false;  // before the near plane
         const vec2 pixel = (0.5 + 0.5 * clip.xy / clip.w) * vec2(frame.size.xy);
         least = min(least, pixel);
@@ -66,7 +57,7 @@ bool is_hidden(vec3 low, vec3 high) {
            any(greaterThan((high_pixel >> level) - (low_pixel >> level), uvec2(3)))) ++level;
     const uvec2 first = low_pixel >> level, end = high_pixel >> level;
     if (any(greaterThan(end - first, uvec2(15)))) return false;  // larger than a thousand pixels
-    const uint offset = pyramid_offset(level), width = pyramid_size(level).x;
+    const uint offset = pyramid_offset(eye, level), width = pyramid_size(level).x;
     for (uint y = first.y; y <= end.y; ++y)
         for (uint x = first.x; x <= end.x; ++x)
             if (pyramid[offset + x + width * y] <= limit) return false;
@@ -78,7 +69,10 @@ bool is_selected(uvec3 block, bool seen) {
     if (seen != (SELECT == SEEN)) return false;
     const vec3 low = vec3(block * BLOCK);
     const vec3 high = min(low + float(BLOCK), vec3(grid.voxels.xyz) - 1.0);
-    return in_frustum(low, high) && (SELECT == SEEN || !is_hidden(low, high));
+    for (uint eye = 0; eye < frame.counts.x; ++eye)
+        if (in_frustum(eye, low, high) && (SELECT == SEEN || !is_hidden(eye, low, high)))
+            return true;
+    return false;
 }
 
 void main() {

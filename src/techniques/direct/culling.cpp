@@ -33,13 +33,13 @@ glm::dvec3 to_vec(const std::array<double, 3>& v) {
     return {v[0], v[1], v[2]};
 }
 
-uint64_t pyramid_bytes(Size size) {
+uint64_t pyramid_bytes(Size size, uint32_t eyes) {
     uint64_t squares = 0;
     for (uint32_t level = 1; level <= 6; ++level) {
         const uint32_t side = 1u << level;
         squares += uint64_t{(size.width + side - 1) / side} * ((size.height + side - 1) / side);
     }
-    return sizeof(float) * squares;
+    return sizeof(float) * squares * eyes;
 }
 
 }  // namespace
@@ -132,9 +132,8 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     seen_ = 1 - seen_;
     target.visible_blocks = &visible_[1 - seen_];
     commands.fill(visible_[1 - seen_], 0);
-    if (pyramid_.bytes() != pyramid_bytes(frame.size))
-        pyramid_ = gpu::Buffer(grid_.device(), pyramid_bytes(frame.size), Memory::device,
-                               "the depth pyramid");
+    if (const uint64_t bytes = pyramid_bytes(frame.size, frame.eyes()); pyramid_.bytes() != bytes)
+        pyramid_ = gpu::Buffer(grid_.device(), bytes, Memory::device, "the depth pyramid");
     const bool cut = is_cut(frame.camera);
     last_camera_ = frame.camera;
     if (cut) {
@@ -144,7 +143,8 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     if (cut && find_first_visible_) {
         const auto pass = commands.pass("find first visible");
         commands.bind(find_first_visible_, {visible_[seen_]});
-        commands.dispatch((frame.size.width + 31) / 32, (frame.size.height + 31) / 32);
+        commands.dispatch((frame.size.width + 31) / 32, (frame.size.height + 31) / 32,
+                          frame.eyes());
     }
     commands.barrier();
 }
@@ -162,7 +162,7 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
 void Culling::build_pyramid(Commands& commands, const Target& target) {
     const auto pass = commands.pass("depth pyramid");
     commands.bind(build_pyramid_, {target.depth, pyramid_});
-    commands.dispatch((target.size.width + 63) / 64, (target.size.height + 63) / 64);
+    commands.dispatch((target.size.width + 63) / 64, (target.size.height + 63) / 64, target.eyes);
     commands.barrier();
 }
 

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Pipelines of task, mesh and fragment shaders, and their draws.
+#include "techniques/direct/hardware.h"
+
+#include <fmt/format.h>
+#include <isorast/error.h>
+
+#include "clip_frag.h"
+#include "clip_stereo_frag.h"
+#include "extract_forward_mesh.h"
+#include "extract_forward_stereo_mesh.h"
+#include "extract_mesh.h"
+#include "extract_stereo_mesh.h"
+#include "extract_task.h"
+#include "forward_frag.h"
+#include "forward_stereo_frag.h"
+#include "gpu/device.h"
+#include "shaders/marching_cubes.h"
+#include "surface_number_frag.h"
+#include "surface_number_stereo_frag.h"
+
+namespace isorast {
+
+namespace {
+
+using gpu::Commands;
+using gpu::Kind;
+
+struct DrawPush {
+    uint32_t chunk, surface;
+};
+
+// What a picture is drawn into beside depth.
+enum class Colors : uint8_t { none, numbers, shaded };
+
+Colors colors_of(const Frame& frame) {
+    if (frame.shading == Shading::forward) return Colors::shaded;
+    return frame.isovalues.size() > 1 ? Colors::numbers : Colors::none;
+}
+
+std::vector<const gpu::Texture*> color_targets(const Frame& frame, const Target& target) {
+    switch (colors_of(frame)) {
+        case Colors::shaded:
+            return {&target.color};
+        case Colors::numbers:
+            return {&target.surfaces};
+        case Colors::none:
+            break;
+    }
+    return {};
+}
+
+std::vector<VkFormat> color_formats(Colors colors) {
+    if (colors == Colors::none) return {};
+    return {colors == Colors::shaded ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32_UINT};
+}
+
+}  // namespace
+
+HardwareRasterizer::HardwareRasterizer(const TechniqueContext& context) : grid_(context.grid) {
+    const gpu::Device& device = grid_.device();
+    if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
+        throw Error(fmt::format(
+            "direct: {} cannot run its hardware rasterizer: {}; use --technique raymarch",
+            device.info().name,
+            device.info().why_not_hardware.empty() ? "mesh shaders are not enabled"
+                                                   : device.info().why_not_hardware));
+    const CaseTable table = marching_cubes_table();
+    cases_ =
+        gpu::Buffer(device, sizeof(table.packed), gpu::Buffer::Memory::device, "marching cubes");
+    gpu::run_once(device, [&](Commands& commands) {
+        commands.update(cases_, 0, table.packed.data(), sizeof(table.packed));
+    });
+}
+
+const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
+    const Colors colors = colors_of(frame);
+    const bool stereo = frame.eyes() > 1, clipped = !frame.clips.empty();
+    gpu::Pipeline& pipeline = pipelines_[size_t(colors) + 3 * stereo + 6 * clipped];
+    if (pipeline) return pipeline;
+
+    using Code = std::span<const uint32_t>;
+    const bool forward = colors == Colors::shaded;
+    const Code mono_mesh = forward ? grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked)
+                                   : grid_.pick(extract_mesh, extract_mesh_bricked);
+    const Code stereo_mesh =
+        forward ? grid_.pick(extract_forward_stereo_mesh, extract_forward_stereo_mesh_bricked)
+                : grid_.pick(extract_stereo_mesh, extract_stereo_mesh_bricked);
+    const std::array<Code, 3> fragment{clip_frag, surface_number_frag, forward_frag};
+    const std::array<Code, 3> stereo_fragment{clip_stereo_frag, surface_number_stereo_frag,
+                                              forward_stereo_frag};
+    std::vector<gpu::Shader> shaders{
+        {VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)},
+        {VK_SHADER_STAGE_MESH_BIT_EXT, stereo ? stereo_mesh : mono_mesh}};
+    if (colors != Colors::none || clipped)
+        shaders.push_back(
+            {VK_SHADER_STAGE_FRAGMENT_BIT, (stereo ? stereo_fragment : fragment)[size_t(colors)]});
+    const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer},
+                                          sizeof(DrawPush), {clipped});
+    pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders,
+                                       {color_formats(colors), VK_FORMAT_D32_SFLOAT});
+    return pipeline;
+}
+
+void HardwareRasterizer::clear(Commands& commands, const Frame& frame, const Target& target) const {
+    const Color& b = frame.background;
+    VkClearColorValue color{};
+    if (frame.shading == Shading::forward) color = {{b.r, b.g, b.b, b.a}};
+    commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ true, color);
+    commands.end_rendering();
+    commands.barrier();
+}
+
+void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uint32_t surface,
+                                 const Frame& frame, const Target& target) {
+    commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
+    commands.bind(pipeline(frame), {culling.drawn_blocks(), cases_});
+    for (uint32_t chunk = 0; chunk < culling.chunks(); ++chunk) {
+        commands.push(DrawPush{chunk, surface});
+        commands.draw_mesh_tasks_indirect(culling.draws(),
+                                          chunk * sizeof(VkDrawMeshTasksIndirectCommandEXT));
+    }
+    commands.end_rendering();
+    commands.barrier();
+}
+
+}  // namespace isorast
