@@ -112,10 +112,15 @@ struct Render : Command {
                      "raymarch: solve each cell's cubic instead of stepping")
             ->group("Surface");
         app.add_option_function<std::string>(
-               "--culling", [this](const std::string& word) { frame.culling = word == "on"; },
-               "Skip what is out of view: on (default) or off")
-            ->type_name("on|off")
-            ->check(CLI::IsMember({"on", "off"}).description(""))
+               "--culling",
+               [this](const std::string& word) {
+                   frame.culling = word != "off";
+                   if (frame.culling) options.occlusion = parse_occlusion(word).value();
+               },
+               "Skip what is out of view or hidden: auto (default), by raster proxies, by a depth "
+               "pyramid (hiz), or off")
+            ->type_name("auto|raster|hiz|off")
+            ->check(CLI::IsMember({"auto", "raster", "hiz", "off"}).description(""))
             ->group("Surface");
     }
 
@@ -254,6 +259,7 @@ struct Render : Command {
                             .isovalues = frame.isovalues,
                             .technique = renderer.technique(),
                             .rasterizer = std::string(name_of(renderer.rasterizer())),
+                            .culling = culling_of(renderer),
                             .device = gpu.info().name,
                             .driver = gpu.info().driver,
                             .value_range = renderer.value_range(),
@@ -266,6 +272,12 @@ struct Render : Command {
         print(report);
         const bool differs = report.difference && report.difference->pixels_over > 0;
         return print_validation(gpu) || differs ? 1 : 0;
+    }
+
+    std::string culling_of(const Renderer& renderer) const {
+        if (!frame.culling) return "off";
+        const Occlusion occlusion = renderer.occlusion();
+        return occlusion == Occlusion::automatic ? "none" : std::string(name_of(occlusion));
     }
 
     // What makes a picture empty, or another one than expected, is said before it is made.

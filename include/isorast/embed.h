@@ -21,7 +21,9 @@ struct HostDevice {
     bool mesh_shaders = false;       // VK_EXT_mesh_shader with taskShader and meshShader
     bool dynamic_rendering = false;  // Vulkan 1.3 dynamicRendering
     bool storage_without_format =
-        false;  // shaderStorageImageWriteWithoutFormat and ...ExtendedFormats
+        false;                     // shaderStorageImageWriteWithoutFormat and ...ExtendedFormats
+    bool fragment_stores = false;  // fragmentStoresAndAtomics: occlusion tests by raster proxies
+    bool representative_test = false;  // VK_NV_representative_fragment_test
 };
 
 // Where a recorded frame's picture will be once the command buffer has run. Images stay in GENERAL

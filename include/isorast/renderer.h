@@ -15,6 +15,9 @@ namespace isorast {
 
 enum class Rasterizer : uint8_t { automatic, hardware, compute };
 enum class Shading : uint8_t { gooch, phong, normals, depth, blocks, forward };
+// How occlusion culling finds hidden blocks: by raster proxies, as in the paper (needs the hardware
+// rasterizer), or by a depth pyramid (HiZ). The picture is the same.
+enum class Occlusion : uint8_t { automatic, raster, hiz };
 
 // Two eyes: both pictures beside each other, twice as wide; red-cyan in one picture; or, for those
 // who show them otherwise, the left eye's picture above the right eye's, twice as high.
@@ -22,15 +25,18 @@ enum class StereoMode : uint8_t { off, side_by_side, anaglyph, layers };
 
 std::string_view name_of(Rasterizer rasterizer);
 std::string_view name_of(Shading shading);
+std::string_view name_of(Occlusion occlusion);
 std::string_view name_of(StereoMode mode);
 std::optional<Rasterizer> parse_rasterizer(std::string_view word);
 std::optional<Shading> parse_shading(std::string_view word);
+std::optional<Occlusion> parse_occlusion(std::string_view word);
 std::optional<StereoMode> parse_stereo(std::string_view word);
 
 struct RendererOptions {
     // One of techniques(); "auto": direct where the device has mesh shaders, else raymarch.
     std::string technique = "auto";
     Rasterizer rasterizer = Rasterizer::automatic;
+    Occlusion occlusion = Occlusion::automatic;
     bool exact = false;           // raymarch: solve each cell's cubic instead of stepping
     uint32_t max_brick_side = 0;  // largest side of a 3D image in voxels; 0: what the device allows
     uint32_t frames_in_flight = 2;
@@ -113,6 +119,8 @@ public:
     VoxelPoints surface_hull(const std::vector<double>& isovalues) const;
     std::string technique() const;  // what "auto" became
     Rasterizer rasterizer() const;  // what `automatic` became
+    // What `automatic` became; still automatic if the technique has no occlusion culling.
+    Occlusion occlusion() const;
 
     class State;
     State& state() const { return *state_; }

@@ -137,7 +137,9 @@ Device::Device(const HostDevice& host)
                  .nonuniform_textures = host.nonuniform_textures,
                  .mesh_shaders = host.mesh_shaders,
                  .dynamic_rendering = host.dynamic_rendering,
-                 .storage_without_format = host.storage_without_format};
+                 .storage_without_format = host.storage_without_format,
+                 .fragment_stores = host.fragment_stores,
+                 .representative_test = host.representative_test};
     load_functions();
 }
 
@@ -185,10 +187,15 @@ void Device::create_device() {
     has_graphics_ = queue.graphics;
     features_ = supported_features(physical_);
     features_.mesh_shaders = features_.mesh_shaders && info_.why_not_hardware.empty();
+    features_.representative_test = features_.representative_test && features_.mesh_shaders;
 
     // Chain only the structures that this device's version and extensions know.
+    VkPhysicalDeviceRepresentativeFragmentTestFeaturesNV representative{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_REPRESENTATIVE_FRAGMENT_TEST_FEATURES_NV,
+        .representativeFragmentTest = VK_TRUE};
     VkPhysicalDeviceMeshShaderFeaturesEXT mesh{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT,
+        .pNext = features_.representative_test ? &representative : nullptr,
         .taskShader = VK_TRUE,
         .meshShader = VK_TRUE};
     VkPhysicalDeviceDynamicRenderingFeatures rendering{
@@ -204,6 +211,7 @@ void Device::create_device() {
         .pNext = properties_.apiVersion >= VK_API_VERSION_1_2 ? &indexing : nullptr,
         .storageBuffer16BitAccess = VK_TRUE};
     const VkPhysicalDeviceFeatures core{
+        .fragmentStoresAndAtomics = features_.fragment_stores,
         .shaderStorageImageExtendedFormats = features_.storage_without_format,
         .shaderStorageImageWriteWithoutFormat = features_.storage_without_format};
     const float priority = 1;
@@ -213,6 +221,8 @@ void Device::create_device() {
                                              .pQueuePriorities = &priority};
     std::vector<const char*> extensions;
     if (features_.mesh_shaders) extensions.push_back(VK_EXT_MESH_SHADER_EXTENSION_NAME);
+    if (features_.representative_test)
+        extensions.push_back(VK_NV_REPRESENTATIVE_FRAGMENT_TEST_EXTENSION_NAME);
     if (has_extension(physical_, "VK_KHR_portability_subset"))
         extensions.push_back("VK_KHR_portability_subset");
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,

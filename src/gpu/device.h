@@ -15,6 +15,8 @@ struct Features {
     bool mesh_shaders = false;
     bool dynamic_rendering = false;
     bool storage_without_format = false;  // formulas sampled on the GPU
+    bool fragment_stores = false;         // occlusion tests by raster proxies
+    bool representative_test = false;     // the same, faster: VK_NV_representative_fragment_test
 };
 
 // Extension functions, loaded by hand.

@@ -110,7 +110,11 @@ Features supported_features(VkPhysicalDevice physical) {
             .mesh_shaders = mesh.taskShader && mesh.meshShader,
             .dynamic_rendering = rendering.dynamicRendering == VK_TRUE,
             .storage_without_format = all.features.shaderStorageImageWriteWithoutFormat &&
-                                      all.features.shaderStorageImageExtendedFormats};
+                                      all.features.shaderStorageImageExtendedFormats,
+            .fragment_stores = all.features.fragmentStoresAndAtomics == VK_TRUE,
+            // The extension has this one feature.
+            .representative_test =
+                has_extension(physical, VK_NV_REPRESENTATIVE_FRAGMENT_TEST_EXTENSION_NAME)};
 }
 
 DeviceInfo describe(VkPhysicalDevice physical) {

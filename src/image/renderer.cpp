@@ -50,6 +50,9 @@ Renderer::State::State(Gpu& gpu, const Volume& volume, const RendererOptions& op
       shade_(grid_) {
     for (uint32_t i = 0; i < std::max(options.frames_in_flight, 1u); ++i)
         submissions_.push_back(std::make_unique<gpu::Submission>(device_));
+    if (options.occlusion != Occlusion::automatic && technique_->occlusion() != options.occlusion)
+        throw Error(fmt::format("culling: {} has no {} occlusion test; use --culling auto",
+                                options_.technique, name_of(options.occlusion)));
     counters_readback_ =
         gpu::Buffer(device_, sizeof(shared::Counters), gpu::Buffer::Memory::host, "counters");
 }
@@ -199,6 +202,9 @@ std::string Renderer::technique() const {
 }
 Rasterizer Renderer::rasterizer() const {
     return state_->technique().rasterizer();
+}
+Occlusion Renderer::occlusion() const {
+    return state_->technique().occlusion();
 }
 
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,

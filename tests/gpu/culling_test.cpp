@@ -46,27 +46,64 @@ bool same_bits(const Image& a, const Image& b) {
            std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * sizeof(float)) == 0;
 }
 
+// A renderer for each occlusion test that the device can do: HiZ by itself, where there are no mesh
+// shaders; and what they count.
+struct Culled {
+    Occlusion occlusion;
+    Renderer renderer;
+    uint64_t drawn = 0;
+};
+
+std::vector<Culled> culled_by_each(Gpu& gpu, const Volume& volume) {
+    std::vector<Culled> result;
+    const bool has_both = gpu.info().why_not_hardware.empty();
+    for (Occlusion occlusion : {Occlusion::hiz, Occlusion::raster})
+        if (has_both)
+            result.push_back(
+                {occlusion,
+                 Renderer(gpu, volume, {.technique = "direct", .occlusion = occlusion})});
+    if (!has_both) result.push_back({Occlusion::automatic, Renderer(gpu, volume)});
+    return result;
+}
+
 TEST_F(GpuTest, OcclusionCullingChangesNoBitOnAnyWalk) {
     if (GRAPHICS_CRASHES) GTEST_SKIP();
     const Volume volume = reference::sampled("noise:56:octaves=3:type=u8");
-    Renderer culled(gpu, volume), whole(gpu, volume);
+    auto tests = culled_by_each(gpu, volume);
+    Renderer whole(gpu, volume);
     Walk walk(volume);
     const int frames = std::getenv("ISORAST_QUICK") ? 60 : 500;
-    uint64_t drawn_culled = 0, drawn_whole = 0;
+    uint64_t drawn_whole = 0;
     double isovalue = 0.5;
     for (int i = 0; i < frames; ++i) {
         if (i % 7 == 0) isovalue = walk.uniform(0.35, 0.65);
         Frame f = frame(walk.step(), {isovalue});
         f.size = {160, 120};
-        const Image a = culled.render(f);
         f.culling = false;
-        ASSERT_TRUE(same_bits(a, whole.render(f))) << "frame " << i;
-        drawn_culled += culled.stats().blocks_drawn;
+        const Image expected = whole.render(f);
         drawn_whole += whole.stats().blocks_drawn;
+        f.culling = true;
+        for (Culled& culled : tests) {
+            ASSERT_TRUE(same_bits(culled.renderer.render(f), expected))
+                << "frame " << i << ", " << name_of(culled.occlusion);
+            culled.drawn += culled.renderer.stats().blocks_drawn;
+        }
     }
-    if (culled.technique() == "direct") {
-        EXPECT_LT(drawn_culled, drawn_whole * 9 / 10);
+    if (tests[0].renderer.technique() == "direct") {
+        for (const Culled& culled : tests)
+            EXPECT_LT(culled.drawn, drawn_whole * 9 / 10) << name_of(culled.occlusion);
     }
+    // A quad at a block's nearest depth is a tighter test than squares of pixels.
+    if (tests.size() > 1) {
+        EXPECT_LT(tests[1].drawn, tests[0].drawn);
+    }
+}
+
+TEST_F(GpuTest, AnOcclusionTestThatATechniqueLacksIsAnError) {
+    const Volume volume = make_procedural("sphere:16");
+    for (Occlusion occlusion : {Occlusion::hiz, Occlusion::raster})
+        EXPECT_THROW(Renderer(gpu, volume, {.technique = "raymarch", .occlusion = occlusion}),
+                     Error);
 }
 
 TEST_F(GpuTest, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
@@ -92,18 +129,22 @@ TEST_F(GpuTest, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
 TEST_F(GpuTest, CullingHoldsForForwardShadingAndSeveralSurfaces) {
     if (GRAPHICS_CRASHES) GTEST_SKIP();
     const Volume volume = reference::sampled("noise:48:octaves=3:type=u8");
-    Renderer culled(gpu, volume), whole(gpu, volume);
+    auto tests = culled_by_each(gpu, volume);
+    Renderer whole(gpu, volume);
     Walk walk(volume);
     for (int i = 0; i < 20; ++i) {
         Frame f = frame(walk.step(), {0.45, 0.6});
         f.size = {160, 120};
-        if (i % 2 && culled.technique() == "direct") {
+        if (i % 2 && whole.technique() == "direct") {
             f.shading = Shading::forward;
             f.isovalues = {0.5};
         }
-        const Image a = culled.render(f);
         f.culling = false;
-        ASSERT_TRUE(same_bits(a, whole.render(f))) << "frame " << i;
+        const Image expected = whole.render(f);
+        f.culling = true;
+        for (Culled& culled : tests)
+            ASSERT_TRUE(same_bits(culled.renderer.render(f), expected))
+                << "frame " << i << ", " << name_of(culled.occlusion);
     }
 }
 

@@ -23,6 +23,7 @@ public:
 
     Rasterizer rasterizer() const override { return Rasterizer::hardware; }
     bool can_shade_forward() const override { return true; }
+    Occlusion occlusion() const override { return culling_.occlusion(); }
     void prepare(Commands& commands, const std::vector<float>& isovalues) override {
         culling_.find_active(commands, isovalues);
     }
@@ -39,7 +40,13 @@ private:
     Culling culling_;
 };
 
-Direct::Direct(const TechniqueContext& context) : hardware_(context), culling_(context.grid) {
+std::unique_ptr<OcclusionTest> make_occlusion_test(const TechniqueContext& context) {
+    return context.options.occlusion == Occlusion::raster ? make_raster_proxies(context.grid)
+                                                          : make_depth_pyramid(context.grid);
+}
+
+Direct::Direct(const TechniqueContext& context)
+    : hardware_(context), culling_(context.grid, make_occlusion_test(context)) {
     if (context.options.exact) throw Error("direct: has no exact way; use --technique raymarch");
     if (context.options.rasterizer == Rasterizer::compute)
         throw Error(
@@ -55,7 +62,7 @@ void Direct::record(Commands& commands, const Frame& frame, Target& target) {
     }
     if (!frame.culling) return draw(commands, frame, target, Culling::Select::all);
     draw(commands, frame, target, Culling::Select::seen);
-    culling_.build_pyramid(commands, target);
+    culling_.look(commands, target);
     draw(commands, frame, target, Culling::Select::unseen);
 }
 
@@ -65,6 +72,7 @@ void Direct::draw(Commands& commands, const Frame& frame, const Target& target,
     constexpr std::array CULL{"list blocks", "cull seen", "cull unseen"};
     constexpr std::array EXTRACT{"extract", "extract seen", "extract unseen"};
     for (uint32_t surface = 0; surface < frame.isovalues.size(); ++surface) {
+        if (which == Culling::Select::unseen) culling_.test(commands, surface, target);
         {
             const auto pass = commands.pass(CULL[size_t(which)]);
             culling_.select(commands, surface, which);
