@@ -128,14 +128,6 @@ void Commands::fill(const Buffer& buffer, uint32_t value) {
     vkCmdFillBuffer(commands_, buffer.handle(), 0, VK_WHOLE_SIZE, value);
 }
 
-void Commands::copy_to_texture(const Buffer& from, const Texture& to, uint32_t z, uint32_t slices) {
-    const VkBufferImageCopy region{.imageSubresource = {to.aspect(), 0, 0, 1},
-                                   .imageOffset = {0, 0, int32_t(z)},
-                                   .imageExtent = {to.extent().width, to.extent().height, slices}};
-    vkCmdCopyBufferToImage(commands_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_GENERAL, 1,
-                           &region);
-}
-
 void Commands::copy_to_buffer(const Texture& from, const Buffer& to) {
     const VkBufferImageCopy region{.imageSubresource = {from.aspect(), 0, 0, from.layers()},
                                    .imageExtent = from.extent()};
@@ -257,6 +249,7 @@ Submission::~Submission() {
 Commands Submission::begin() {
     wait();
     slot_.reset();
+    VK_CHECK(vkResetCommandBuffer(commands_, 0));  // an error may have ended its recording half way
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     VK_CHECK(vkBeginCommandBuffer(commands_, &info));
@@ -275,7 +268,7 @@ void Submission::submit() {
     const VkSubmitInfo info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                             .commandBufferCount = 1,
                             .pCommandBuffers = &commands_};
-    VK_CHECK(vkQueueSubmit(device_.queue(), 1, &info, fence_));
+    device_.submit(device_.queue(), info, fence_);
     pending_ = true;
 }
 

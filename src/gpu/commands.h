@@ -77,8 +77,6 @@ public:
     void copy(const Buffer& from, uint64_t from_offset, const Buffer& to, uint64_t to_offset,
               uint64_t bytes);
     void fill(const Buffer& buffer, uint32_t value);
-    // Whole slices z .. z + slices - 1 of a 3D image, tightly packed in the buffer.
-    void copy_to_texture(const Buffer& from, const Texture& to, uint32_t z, uint32_t slices);
     // All layers, one after the other, tightly packed.
     void copy_to_buffer(const Texture& from, const Buffer& to);
 

@@ -2,6 +2,7 @@
 // Buffers, images and samplers.
 #include "gpu/resources.h"
 
+#include <array>
 #include <utility>
 
 #include "gpu/device.h"
@@ -47,15 +48,21 @@ void Buffer::swap(Buffer& other) noexcept {
 namespace {
 
 VkImage create_image(const Device& device, const ImageInfo& info) {
-    const VkImageCreateInfo create{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                                   .imageType = info.is_3d ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
-                                   .format = info.format,
-                                   .extent = info.extent,
-                                   .mipLevels = 1,
-                                   .arrayLayers = info.layers,
-                                   .samples = VK_SAMPLE_COUNT_1_BIT,
-                                   .tiling = VK_IMAGE_TILING_OPTIMAL,
-                                   .usage = info.usage};
+    const std::array families{device.queue_family(), device.upload_family()};
+    const bool shared = info.uploaded && families[0] != families[1];
+    const VkImageCreateInfo create{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = info.is_3d ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
+        .format = info.format,
+        .extent = info.extent,
+        .mipLevels = 1,
+        .arrayLayers = info.layers,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = info.usage,
+        .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
+        .queueFamilyIndexCount = shared ? uint32_t(families.size()) : 0,
+        .pQueueFamilyIndices = shared ? families.data() : nullptr};
     VkImage image = VK_NULL_HANDLE;
     VK_CHECK(vkCreateImage(device.handle(), &create, nullptr, &image));
     return image;

@@ -52,7 +52,8 @@ struct ImageInfo {
     VkExtent3D extent{1, 1, 1};
     VkImageUsageFlags usage = 0;
     bool is_3d = false;
-    uint32_t layers = 1;  // of a 2D image, which is an array to all shaders; at most 2
+    uint32_t layers = 1;    // of a 2D image, which is an array to all shaders; at most 2
+    bool uploaded = false;  // written on the upload queue too
 };
 
 class Texture {
