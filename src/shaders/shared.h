@@ -41,12 +41,12 @@ ISORAST_CONSTANT uint BIND_FRAME = 0, BIND_GRID = 1, BIND_BRICKS = 2, BIND_SAMPL
                       BIND_MINMAX = 4;
 
 struct GridInfo {
-    uvec4 voxels;              // xyz: voxels along each axis
-    uvec4 blocks;              // xyz: blocks along each axis; w: all
-    uvec4 groups;              // xyz: groups along each axis; w: all
-    uvec4 brick_cells;         // xyz: cells of a brick along each axis, whole blocks
-    uvec4 bricks;              // xyz: bricks along each axis; w: levels of the min-max pyramid
-    vec4 range;                // x: the least that a stored value counts as in gradients
+    uvec4 voxels;       // xyz: voxels along each axis
+    uvec4 blocks;       // xyz: blocks along each axis; w: all
+    uvec4 groups;       // xyz: groups along each axis; w: all
+    uvec4 brick_cells;  // xyz: cells of a brick along each axis, whole blocks
+    uvec4 bricks;       // xyz: bricks along each axis; w: levels of the min-max pyramid
+    vec4 range;  // x: the least value that gradients see; voxels that are not finite do no harm so
     uvec4 levels[MAX_LEVELS];  // xyz: nodes along each axis; w: index of the level's first node
 };
 
