@@ -20,6 +20,7 @@ class Device;
 struct Binding {
     Binding(const Buffer& from) : buffer(from.handle()) {}  // NOLINT(google-explicit-constructor)
     Binding(const Texture& from) : view(from.view()) {}     // NOLINT(google-explicit-constructor)
+    explicit Binding(VkImageView from) : view(from) {}
     VkBuffer buffer = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
 };
@@ -76,6 +77,7 @@ public:
     void copy(const Buffer& from, uint64_t from_offset, const Buffer& to, uint64_t to_offset,
               uint64_t bytes);
     void fill(const Buffer& buffer, uint32_t value);
+    void clear(const Texture& texture, const VkClearColorValue& color);  // not a depth image
     // Whole slices z .. z + slices - 1 of a 3D image, tightly packed in the buffer.
     void copy_to_texture(const Buffer& from, const Texture& to, uint32_t z, uint32_t slices);
     void copy_to_buffer(const Texture& from, const Buffer& to);

@@ -47,15 +47,17 @@ void Buffer::swap(Buffer& other) noexcept {
 namespace {
 
 VkImage create_image(const Device& device, const ImageInfo& info) {
-    const VkImageCreateInfo create{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                                   .imageType = info.is_3d ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
-                                   .format = info.format,
-                                   .extent = info.extent,
-                                   .mipLevels = 1,
-                                   .arrayLayers = 1,
-                                   .samples = VK_SAMPLE_COUNT_1_BIT,
-                                   .tiling = VK_IMAGE_TILING_OPTIMAL,
-                                   .usage = info.usage};
+    const VkImageCreateInfo create{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .flags = info.as_bits ? VkImageCreateFlags{VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT} : 0u,
+        .imageType = info.is_3d ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
+        .format = info.format,
+        .extent = info.extent,
+        .mipLevels = 1,
+        .arrayLayers = 1,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = info.usage};
     VkImage image = VK_NULL_HANDLE;
     VK_CHECK(vkCreateImage(device.handle(), &create, nullptr, &image));
     return image;
@@ -71,17 +73,25 @@ Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
     bytes_ = requirements.size;
     memory_ = device.allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, what);
     VK_CHECK(vkBindImageMemory(device.handle(), image_, memory_, 0));
-    const VkImageViewCreateInfo view{
+    view_ = make_view(info.format);
+    if (info.as_bits) bits_view_ = make_view(VK_FORMAT_R32_UINT);
+}
+
+VkImageView Texture::make_view(VkFormat format) const {
+    const VkImageViewCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
         .image = image_,
-        .viewType = info.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
-        .format = info.format,
+        .viewType = info_.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
+        .format = format,
         .subresourceRange = {aspect(), 0, 1, 0, 1}};
-    VK_CHECK(vkCreateImageView(device.handle(), &view, nullptr, &view_));
+    VkImageView view = VK_NULL_HANDLE;
+    VK_CHECK(vkCreateImageView(device_->handle(), &info, nullptr, &view));
+    return view;
 }
 
 Texture::~Texture() {
     if (!device_) return;
+    vkDestroyImageView(device_->handle(), bits_view_, nullptr);
     vkDestroyImageView(device_->handle(), view_, nullptr);
     vkDestroyImage(device_->handle(), image_, nullptr);
     vkFreeMemory(device_->handle(), memory_, nullptr);
@@ -104,6 +114,7 @@ void Texture::swap(Texture& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(image_, other.image_);
     std::swap(view_, other.view_);
+    std::swap(bits_view_, other.bits_view_);
     std::swap(memory_, other.memory_);
     std::swap(info_, other.info_);
     std::swap(bytes_, other.bytes_);

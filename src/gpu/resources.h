@@ -51,6 +51,8 @@ struct ImageInfo {
     VkExtent3D extent{1, 1, 1};
     VkImageUsageFlags usage = 0;
     bool is_3d = false;
+    // Its texels can be seen as R32_UINT too, for atomics: formats of 32 bits.
+    bool as_bits = false;
 };
 
 class Texture {
@@ -69,6 +71,7 @@ public:
 
     VkImage handle() const { return image_; }
     VkImageView view() const { return view_; }
+    VkImageView bits_view() const { return bits_view_; }  // ImageInfo::as_bits
     VkFormat format() const { return info_.format; }
     VkExtent3D extent() const { return info_.extent; }
     VkImageAspectFlags aspect() const;
@@ -76,10 +79,11 @@ public:
     explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
 private:
+    VkImageView make_view(VkFormat format) const;
     void swap(Texture& other) noexcept;
     const Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
-    VkImageView view_ = VK_NULL_HANDLE;
+    VkImageView view_ = VK_NULL_HANDLE, bits_view_ = VK_NULL_HANDLE;
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
     ImageInfo info_;
     uint64_t bytes_ = 0;

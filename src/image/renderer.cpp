@@ -61,7 +61,9 @@ Renderer::State::~State() {
 void Renderer::State::record(gpu::Commands& commands, const Frame& frame) {
     check(frame);
     if (frame.shading == Shading::forward && !technique_->can_shade_forward())
-        throw Error(fmt::format("shading: {} cannot shade forward; use gooch", options_.technique));
+        throw Error(
+            fmt::format("shading: {} with the {} rasterizer cannot shade forward; use gooch",
+                        options_.technique, name_of(technique_->rasterizer())));
     if (!target_.fits(frame)) {
         for (auto& submission : submissions_)
             submission->wait();

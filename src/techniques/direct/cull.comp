@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Workgroup: one active group at a time. Thread: one block. Out: the list of blocks to draw, in
-// chunks, and the task shader's indirect arguments. Culling is in two passes (Kreskowski 2022,
+// chunks, and the indirect arguments to draw it. Culling is in two passes (Kreskowski 2022,
 // section 3.5 and figure 2, with a depth pyramid in place of raster proxies): blocks that the last
 // frame saw are drawn first; then those of all others that they do not hide.
 #include "shaders/scene.glsl"
@@ -19,7 +19,7 @@ layout(set = 1, binding = 0, std430) readonly buffer ActiveGroups {
     uvec2 active_groups[];
 };
 struct DrawArguments {
-    uint blocks, halves, one;  // VkDrawMeshTasksIndirectCommandEXT
+    uint blocks, workgroups, one;  // as VkDispatchIndirectCommand
 };
 layout(set = 1, binding = 1, std430) buffer Draws { DrawArguments draws[]; };
 layout(set = 1, binding = 2, std430) writeonly buffer DrawnBlocks { uint16_t drawn_blocks[]; };

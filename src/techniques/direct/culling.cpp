@@ -44,7 +44,7 @@ uint64_t pyramid_bytes(Size size) {
 
 }  // namespace
 
-Culling::Culling(const Grid& grid) : grid_(grid) {
+Culling::Culling(const Grid& grid, uint32_t workgroups) : grid_(grid) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
     chunks_ = (groups + shared::CHUNK_GROUPS - 1) / shared::CHUNK_GROUPS;
@@ -54,7 +54,7 @@ Culling::Culling(const Grid& grid) : grid_(grid) {
     draws_ = gpu::Buffer(device, draw_bytes, Memory::device, "draw arguments");
     empty_draws_ = gpu::Buffer(device, draw_bytes, Memory::host, "draw arguments");
     for (uint32_t i = 0; i < chunks_; ++i)
-        empty_draws_.data<VkDrawMeshTasksIndirectCommandEXT>()[i] = {0, 2, 1};
+        empty_draws_.data<VkDrawMeshTasksIndirectCommandEXT>()[i] = {0, workgroups, 1};
     counters_ = gpu::Buffer(device, sizeof(shared::Counters), Memory::device, "counters");
     for (gpu::Buffer& visible : visible_)
         visible = gpu::Buffer(device, uint64_t{4} * groups, Memory::device, "visible blocks");

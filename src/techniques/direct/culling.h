@@ -13,7 +13,8 @@ namespace isorast {
 
 class Culling {
 public:
-    explicit Culling(const Grid& grid);
+    // `workgroups`: how many draw a block, the y of draws().
+    Culling(const Grid& grid, uint32_t workgroups);
 
     // The active groups of each surface: once an isovalue.
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
@@ -31,9 +32,8 @@ public:
     // A chunk is 32768 blocks: entry e of chunk c, a block's 16-bit place in the chunk, is at
     // [c * 32768 + e].
     const gpu::Buffer& drawn_blocks() const { return drawn_blocks_; }
-    const gpu::Buffer& draws() const {
-        return draws_;
-    }  // VkDrawMeshTasksIndirectCommandEXT a chunk
+    // A chunk's blocks, workgroups for each, 1: arguments of an indirect dispatch or mesh draw.
+    const gpu::Buffer& draws() const { return draws_; }
     uint32_t chunks() const { return chunks_; }
     const gpu::Buffer& counters() const { return counters_; }
     uint64_t gpu_bytes() const;
