@@ -12,7 +12,6 @@
 
 namespace isorast {
 
-enum class Rasterizer : uint8_t { automatic, hardware, compute };
 enum class Shading : uint8_t { gooch, phong, normals, depth, blocks, forward };
 
 std::string_view name_of(Rasterizer rasterizer);
@@ -21,7 +20,7 @@ std::optional<Rasterizer> parse_rasterizer(std::string_view word);
 std::optional<Shading> parse_shading(std::string_view word);
 
 struct RendererOptions {
-    // One of techniques(); "auto": direct where the device has mesh shaders, else raymarch.
+    // One of techniques(); "auto": direct, or raymarch where direct cannot be had.
     std::string technique = "auto";
     Rasterizer rasterizer = Rasterizer::automatic;
     bool exact = false;           // raymarch: solve each cell's cubic instead of stepping
@@ -66,6 +65,14 @@ std::string what_does_not_fit(const Gpu& gpu, const Volume& volume,
                               const RendererOptions& options = {});
 
 std::vector<std::string> techniques();
+
+// The rasterizer that direct uses on this device unless told otherwise. The first time, the compute
+// rasterizer draws a sphere that is compared with the formula, and where there is a choice, both
+// draw a small scene and the faster one wins. The answer is kept in the user's cache directory
+// (XDG_CACHE_HOME or ~/.cache), for this device, driver and version of isorast; where that cannot
+// be written, for the life of the Gpu. `type`: of the volume to be drawn, if there is one; the
+// sphere has the same, so that its shaders are compiled only once.
+RasterizerChoice choose_rasterizer(Gpu& gpu, VoxelType type = VoxelType::u8);
 
 class Renderer {
 public:

@@ -13,14 +13,31 @@ namespace isorast {
 
 namespace {
 
-// "auto" becomes what the device can do.
-RendererOptions resolved(const Gpu& gpu, RendererOptions options) {
-    const bool direct = gpu.info().why_not_hardware.empty() &&
-                        gpu.device().features().mesh_shaders &&
-                        options.rasterizer != Rasterizer::compute && !options.exact;
-    if (options.technique == "auto") options.technique = direct ? "direct" : "raymarch";
+// "auto" becomes what the device does best.
+RendererOptions resolved(Gpu& gpu, const Volume& volume, RendererOptions options) {
+    const bool automatic = options.technique == "auto";
+    if (automatic) options.technique = options.exact ? "raymarch" : "direct";
+    if (options.technique != "direct" || options.rasterizer != Rasterizer::automatic)
+        return options;
+    const RasterizerChoice choice = choose_rasterizer(gpu, volume.type);
+    options.rasterizer = choice.rasterizer;
+    if (choice.rasterizer != Rasterizer::automatic) return options;
+    if (!automatic)
+        throw Error(
+            fmt::format("direct: {} has no hardware rasterizer ({}) and fails the compute "
+                        "rasterizer's self-test ({}); use --technique raymarch",
+                        gpu.info().name, gpu.info().why_not_hardware, choice.problem));
+    options.technique = "raymarch";
     return options;
 }
+
+// Checks the volume before anything is made from it.
+Placement place(const Volume& volume) {
+    check(volume);
+    return {volume.affine, volume.dims};
+}
+
+}  // namespace
 
 std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
     std::string known;
@@ -32,17 +49,9 @@ std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
         fmt::format("technique: expected one of {}, found '{}'", known, context.options.technique));
 }
 
-// Checks the volume before anything is made from it.
-Placement place(const Volume& volume) {
-    check(volume);
-    return {volume.affine, volume.dims};
-}
-
-}  // namespace
-
 Renderer::State::State(Gpu& gpu, const Volume& volume, const RendererOptions& options)
     : device_(gpu.device()),
-      options_(resolved(gpu, options)),
+      options_(resolved(gpu, volume, options)),
       placement_(place(volume)),
       grid_(device_, volume, options.max_brick_side),
       technique_(make_technique({grid_, options_})),

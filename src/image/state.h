@@ -15,6 +15,9 @@
 
 namespace isorast {
 
+// The technique that the options name. Throws Error when there is none, or the device cannot.
+std::unique_ptr<Technique> make_technique(const TechniqueContext& context);
+
 class Renderer::State {
 public:
     State(Gpu& gpu, const Volume& volume, const RendererOptions& options);

@@ -46,10 +46,22 @@ bool same_bits(const Image& a, const Image& b) {
            std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * sizeof(float)) == 0;
 }
 
-TEST_F(GpuTest, OcclusionCullingChangesNoBitOnAnyWalk) {
-    if (GRAPHICS_CRASHES) GTEST_SKIP();
+// direct with each of the device's rasterizers.
+class Culling : public GpuTest, public testing::WithParamInterface<Rasterizer> {
+protected:
+    void SetUp() override {
+        const bool hardware = GetParam() == Rasterizer::hardware;
+        if (hardware && (GRAPHICS_CRASHES || !gpu.info().why_not_hardware.empty())) GTEST_SKIP();
+    }
+    const RendererOptions options{.technique = "direct", .rasterizer = GetParam()};
+};
+INSTANTIATE_TEST_SUITE_P(Direct, Culling,
+                         testing::Values(Rasterizer::hardware, Rasterizer::compute),
+                         [](const auto& each) { return std::string(name_of(each.param)); });
+
+TEST_P(Culling, ChangesNoBitOnAnyWalk) {
     const Volume volume = reference::sampled("noise:56:octaves=3:type=u8");
-    Renderer culled(gpu, volume), whole(gpu, volume);
+    Renderer culled(gpu, volume, options), whole(gpu, volume, options);
     Walk walk(volume);
     const int frames = std::getenv("ISORAST_QUICK") ? 60 : 500;
     uint64_t drawn_culled = 0, drawn_whole = 0;
@@ -64,15 +76,12 @@ TEST_F(GpuTest, OcclusionCullingChangesNoBitOnAnyWalk) {
         drawn_culled += culled.stats().blocks_drawn;
         drawn_whole += whole.stats().blocks_drawn;
     }
-    if (culled.technique() == "direct") {
-        EXPECT_LT(drawn_culled, drawn_whole * 9 / 10);
-    }
+    EXPECT_LT(drawn_culled, drawn_whole * 9 / 10);
 }
 
-TEST_F(GpuTest, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
-    if (GRAPHICS_CRASHES) GTEST_SKIP();
+TEST_P(Culling, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
     const Volume volume = make_procedural("noise:256:type=u8");
-    Renderer culled(gpu, volume), whole(gpu, volume);
+    Renderer culled(gpu, volume, options), whole(gpu, volume, options);
     Frame f = frame(orbit(volume, 30, 20), {0.5});
     f.size = {960, 540};
     const Image cold = culled.render(f);
@@ -83,21 +92,18 @@ TEST_F(GpuTest, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
     const Image expected = whole.render(f);
     EXPECT_TRUE(same_bits(cold, expected));
     EXPECT_TRUE(same_bits(warm, expected));
-    if (culled.technique() == "direct") {
-        EXPECT_LT(drawn_cold, whole.stats().blocks_drawn);
-        EXPECT_LT(drawn_warm, drawn_cold * 9 / 10);
-    }
+    EXPECT_LT(drawn_cold, whole.stats().blocks_drawn);
+    EXPECT_LT(drawn_warm, drawn_cold * 9 / 10);
 }
 
-TEST_F(GpuTest, CullingHoldsForForwardShadingAndSeveralSurfaces) {
-    if (GRAPHICS_CRASHES) GTEST_SKIP();
+TEST_P(Culling, HoldsForForwardShadingAndSeveralSurfaces) {
     const Volume volume = reference::sampled("noise:48:octaves=3:type=u8");
-    Renderer culled(gpu, volume), whole(gpu, volume);
+    Renderer culled(gpu, volume, options), whole(gpu, volume, options);
     Walk walk(volume);
     for (int i = 0; i < 20; ++i) {
         Frame f = frame(walk.step(), {0.45, 0.6});
         f.size = {160, 120};
-        if (i % 2 && culled.technique() == "direct") {
+        if (i % 2 && GetParam() == Rasterizer::hardware) {
             f.shading = Shading::forward;
             f.isovalues = {0.5};
         }

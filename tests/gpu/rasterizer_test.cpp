@@ -68,7 +68,8 @@ Difference difference(const std::vector<float>& a, const std::vector<float>& b) 
 TEST_F(GpuTest, TheComputeRasterizerDrawsTheHardwaresPixels) {
     if (GRAPHICS_CRASHES || !gpu.info().why_not_hardware.empty()) GTEST_SKIP();
     std::mt19937 random(3);
-    for (const std::string name : {"noise:64:type=u8", "sphere:64", "gyroid:48x64x40", "coral:96"}) {
+    for (const std::string name :
+         {"noise:64:type=u8", "sphere:64", "gyroid:48x64x40", "coral:96"}) {
         const Volume volume = reference::sampled(name);
         const double level = suggest_isovalue(volume, statistics(volume));
         Renderer hardware(gpu, volume, {.technique = "direct", .rasterizer = Rasterizer::hardware});
@@ -84,9 +85,12 @@ TEST_F(GpuTest, TheComputeRasterizerDrawsTheHardwaresPixels) {
             all.coverage += d.coverage;
             all.far += d.far;
             all.bits += d.bits;
-            if (std::getenv("VERBOSE")) fmt::print("{} {}: covered {} coverage {} far {} bits {} ortho {}\n", name, i, d.covered, d.coverage, d.far, d.bits, f.camera.orthographic);
+            if (std::getenv("VERBOSE"))
+                fmt::print("{} {}: covered {} coverage {} far {} bits {} ortho {}\n", name, i,
+                           d.covered, d.coverage, d.far, d.bits, f.camera.orthographic);
         }
-        fmt::print("{}: covered {} coverage {} far {} bits {}\n", name, all.covered, all.coverage, all.far, all.bits);
+        fmt::print("{}: covered {} coverage {} far {} bits {}\n", name, all.covered, all.coverage,
+                   all.far, all.bits);
         EXPECT_LE(all.coverage * 10000, uint64_t(views) * 640 * 360) << name;
         EXPECT_LE(all.far * 1000, all.covered) << name;
     }

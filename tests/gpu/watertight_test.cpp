@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // No hole, ever: along each pixel's ray a closed surface is entered as often as it is left. The
 // compute rasterizer, built to count instead of keeping the nearest depth (rasterize.comp,
-// COUNTING), adds 1 for each front face and takes 1 for each back face: the sum is 0 at every pixel.
-// The surface is a shell of random voxels at and around the isovalue; views go from many triangles
-// in a pixel to triangles larger than the picture.
+// COUNTING), adds 1 for each front face and takes 1 for each back face: the sum is 0 at every
+// pixel. The surface is a shell of random voxels at and around the isovalue; views go from many
+// triangles in a pixel to triangles larger than the picture.
 #include <isorast/image.h>
 
 #include <random>
@@ -29,13 +29,13 @@ public:
           bytes_(uint64_t{4} * size.width * size.height) {
         const CaseTable table = marching_cubes_table();
         cases_ = gpu::Buffer(device, sizeof(table.packed), Memory::device, "a test");
-        counts_ = gpu::Texture(device,
-                               {.format = VK_FORMAT_R32_UINT,
-                                .extent = {size.width, size.height, 1},
-                                .usage = VK_IMAGE_USAGE_STORAGE_BIT |
-                                         VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                                         VK_IMAGE_USAGE_TRANSFER_DST_BIT},
-                               "a test");
+        counts_ =
+            gpu::Texture(device,
+                         {.format = VK_FORMAT_R32_UINT,
+                          .extent = {size.width, size.height, 1},
+                          .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                   VK_IMAGE_USAGE_TRANSFER_DST_BIT},
+                         "a test");
         read_ = gpu::Buffer(device, bytes_, Memory::host, "a test");
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::image, Kind::image};
         pipeline_ = gpu::Pipeline::compute(device, grid_.pipeline_info("counting", bindings, 8),

@@ -26,11 +26,12 @@ struct Polygon {
     uint count;
 };
 
+// Not unrolled: forty copies of the cut would double the time to compile the shader.
 void clip_polygon(inout Polygon polygon) {
-    for (uint plane = 0; plane < 5; ++plane) {
+    [[dont_unroll]] for (uint plane = 0; plane < 5; ++plane) {
         const Polygon whole = polygon;
         polygon.count = 0;
-        for (uint i = 0; i < whole.count; ++i) {
+        [[dont_unroll]] for (uint i = 0; i < whole.count; ++i) {
             const vec4 from = whole.corners[i], to = whole.corners[(i + 1) % whole.count];
             const float d_from = plane_distance(from, plane), d_to = plane_distance(to, plane);
             if (d_from >= 0.0) polygon.corners[polygon.count++] = from;

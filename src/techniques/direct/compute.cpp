@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Blocks to triangles to depth in one compute shader: no mesh shaders, no graphics queue. Depth is
 // kept by a 32-bit atomic maximum of the float's bits.
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,14 +18,7 @@ using gpu::Kind;
 
 class Compute final : public DirectRasterizer {
 public:
-    Compute(const Grid& grid, const gpu::Buffer& cases) : cases_(cases) {
-        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::image, Kind::image};
-        const auto info = grid.pipeline_info("rasterize", bindings, sizeof(Push));
-        rasterize_ = gpu::Pipeline::compute(grid.device(), info,
-                                            grid.pick(rasterize_comp, rasterize_comp_bricked));
-        numbered_ = gpu::Pipeline::compute(
-            grid.device(), info, grid.pick(rasterize_numbered, rasterize_numbered_bricked));
-    }
+    Compute(const Grid& grid, const gpu::Buffer& cases) : grid_(grid), cases_(cases) {}
 
     void clear(Commands& commands, const Frame&, const Target& target) override {
         commands.clear(target.depth, {});
@@ -33,7 +27,7 @@ public:
 
     void draw(Commands& commands, const Frame& frame, uint32_t surface, const Culling& culling,
               const Target& target) override {
-        commands.bind(frame.isovalues.size() > 1 ? numbered_ : rasterize_,
+        commands.bind(pipeline(/* numbered= */ frame.isovalues.size() > 1),
                       {culling.drawn_blocks(), cases_, gpu::Binding(target.depth.bits_view()),
                        target.surfaces});
         for (uint32_t chunk = 0; chunk < culling.chunks(); ++chunk) {
@@ -47,8 +41,22 @@ private:
     struct Push {
         uint32_t chunk, surface;
     };
+    // Made when first needed.
+    const gpu::Pipeline& pipeline(bool numbered) {
+        gpu::Pipeline& pipeline = pipelines_[numbered];
+        if (!pipeline) {
+            const std::vector bindings{Kind::buffer, Kind::buffer, Kind::image, Kind::image};
+            pipeline = gpu::Pipeline::compute(
+                grid_.device(), grid_.pipeline_info("rasterize", bindings, sizeof(Push)),
+                numbered ? grid_.pick(rasterize_numbered, rasterize_numbered_bricked)
+                         : grid_.pick(rasterize_comp, rasterize_comp_bricked));
+        }
+        return pipeline;
+    }
+
+    const Grid& grid_;
     const gpu::Buffer& cases_;
-    gpu::Pipeline rasterize_, numbered_;
+    std::array<gpu::Pipeline, 2> pipelines_;
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <isorast/error.h>
 
+#include <array>
+
 #include "extract_forward_mesh.h"
 #include "extract_mesh.h"
 #include "extract_task.h"
@@ -31,11 +33,16 @@ private:
     struct Push {
         uint32_t chunk, surface;
     };
+    // Beside depth.
+    enum class Draws : uint8_t { depth, numbers, colors };
+    const gpu::Pipeline& pipeline(Draws draws);
+
+    const Grid& grid_;
     const gpu::Buffer& cases_;
-    gpu::Pipeline extract_, extract_numbered_, extract_forward_;
+    std::array<gpu::Pipeline, 3> pipelines_;  // made when first needed
 };
 
-Hardware::Hardware(const Grid& grid, const gpu::Buffer& cases) : cases_(cases) {
+Hardware::Hardware(const Grid& grid, const gpu::Buffer& cases) : grid_(grid), cases_(cases) {
     const gpu::Device& device = grid.device();
     if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
         throw Error(fmt::format(
@@ -43,22 +50,32 @@ Hardware::Hardware(const Grid& grid, const gpu::Buffer& cases) : cases_(cases) {
             device.info().name,
             device.info().why_not_hardware.empty() ? "mesh shaders are not enabled"
                                                    : device.info().why_not_hardware));
+}
+
+const gpu::Pipeline& Hardware::pipeline(Draws draws) {
+    gpu::Pipeline& pipeline = pipelines_[size_t(draws)];
+    if (pipeline) return pipeline;
     const auto info =
-        grid.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer}, sizeof(Push));
-    const gpu::Shader task{VK_SHADER_STAGE_TASK_BIT_EXT,
-                           grid.pick(extract_task, extract_task_bricked)};
-    const gpu::Shader mesh{VK_SHADER_STAGE_MESH_BIT_EXT,
-                           grid.pick(extract_mesh, extract_mesh_bricked)};
-    const gpu::Shader forward_mesh{VK_SHADER_STAGE_MESH_BIT_EXT,
-                                   grid.pick(extract_forward_mesh, extract_forward_mesh_bricked)};
-    const gpu::Shader numbers{VK_SHADER_STAGE_FRAGMENT_BIT, surface_number_frag};
-    const VkFormat depth = VK_FORMAT_D32_SFLOAT;
-    extract_ = gpu::Pipeline::graphics(device, info, {task, mesh}, {{}, depth});
-    extract_numbered_ =
-        gpu::Pipeline::graphics(device, info, {task, mesh, numbers}, {{VK_FORMAT_R32_UINT}, depth});
-    extract_forward_ = gpu::Pipeline::graphics(
-        device, info, {task, forward_mesh, {VK_SHADER_STAGE_FRAGMENT_BIT, forward_frag}},
-        {{VK_FORMAT_R8G8B8A8_UNORM}, depth});
+        grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer}, sizeof(Push));
+    std::vector<gpu::Shader> shaders{
+        {VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)}};
+    gpu::Attachments attachments{{}, VK_FORMAT_D32_SFLOAT};
+    if (draws == Draws::colors)
+        shaders.push_back({VK_SHADER_STAGE_MESH_BIT_EXT,
+                           grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked)});
+    else
+        shaders.push_back(
+            {VK_SHADER_STAGE_MESH_BIT_EXT, grid_.pick(extract_mesh, extract_mesh_bricked)});
+    if (draws == Draws::colors) {
+        shaders.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, forward_frag});
+        attachments.colors = {VK_FORMAT_R8G8B8A8_UNORM};
+    }
+    if (draws == Draws::numbers) {
+        shaders.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, surface_number_frag});
+        attachments.colors = {VK_FORMAT_R32_UINT};
+    }
+    pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders, attachments);
+    return pipeline;
 }
 
 // What a picture is drawn into beside depth: colours, the surfaces' numbers, or nothing.
@@ -79,12 +96,11 @@ void Hardware::clear(Commands& commands, const Frame& frame, const Target& targe
 
 void Hardware::draw(Commands& commands, const Frame& frame, uint32_t surface,
                     const Culling& culling, const Target& target) {
-    const bool forward = frame.shading == Shading::forward, numbered = frame.isovalues.size() > 1;
+    const Draws draws = frame.shading == Shading::forward ? Draws::colors
+                        : frame.isovalues.size() > 1      ? Draws::numbers
+                                                          : Draws::depth;
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
-    commands.bind(forward    ? extract_forward_
-                  : numbered ? extract_numbered_
-                             : extract_,
-                  {culling.drawn_blocks(), cases_});
+    commands.bind(pipeline(draws), {culling.drawn_blocks(), cases_});
     for (uint32_t chunk = 0; chunk < culling.chunks(); ++chunk) {
         commands.push(Push{chunk, surface});
         commands.draw_mesh_tasks_indirect(culling.draws(),

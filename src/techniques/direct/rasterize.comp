@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // variant rasterize_numbered: -DNUMBERED
 // variant rasterize_counting: -DCOUNTING
 // Workgroup: one block of 8^3 cells. Thread: voxels, then rows, then vertices, then triangles. Out:
