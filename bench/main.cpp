@@ -45,7 +45,7 @@ Way parse_way(const std::string& words) {
     stream >> way.options.technique;
     for (std::string word; stream >> word;) {
         if (word == "forward")
-            way.shading = Shading::forward;
+            way.shading = Shading::forward, way.options.rasterizer = Rasterizer::hardware;
         else if (word == "exact")
             way.options.exact = true;
         else if (const auto rasterizer = parse_rasterizer(word))

@@ -11,7 +11,7 @@
 namespace isorast::cli {
 namespace {
 
-using Row = std::array<std::string, 8>;
+using Row = std::array<std::string, 9>;
 
 std::string yes_or(const std::string& why_not) {
     return why_not.empty() ? "yes" : "no: " + why_not;
@@ -32,7 +32,27 @@ void print_table(const std::vector<Row>& rows) {
     }
 }
 
+// Which rasterizer direct takes there, and why.
+std::string describe(const RasterizerChoice& choice) {
+    std::string text(choice.rasterizer == Rasterizer::automatic ? "none"
+                                                                : name_of(choice.rasterizer));
+    if (!choice.problem.empty())
+        return text + fmt::format(" (compute fails its self-test: {})", choice.problem);
+    if (choice.hardware_ms > 0)
+        text += fmt::format(" (a small scene: hardware {:.2f} ms, compute {:.2f} ms)",
+                            choice.hardware_ms, choice.compute_ms);
+    return text;
+}
+
+// Asks a device that can compute; the first time, that takes a moment.
+RasterizerChoice choose(const DeviceInfo& info, size_t number) {
+    if (!info.why_not_compute.empty()) return {.problem = info.why_not_compute};
+    Gpu gpu({.device = std::to_string(number)});
+    return choose_rasterizer(gpu);
+}
+
 Json describe(const DeviceInfo& info, size_t number) {
+    const RasterizerChoice choice = choose(info, number);
     return {{"number", number},
             {"name", info.name},
             {"kind", info.kind},
@@ -45,7 +65,11 @@ Json describe(const DeviceInfo& info, size_t number) {
             {"hardware", info.why_not_hardware.empty()},
             {"why_not_hardware", info.why_not_hardware},
             {"compute", info.why_not_compute.empty()},
-            {"why_not_compute", info.why_not_compute}};
+            {"why_not_compute", info.why_not_compute},
+            {"rasterizer", name_of(choice.rasterizer)},
+            {"compute_problem", choice.problem},
+            {"hardware_ms", choice.hardware_ms},
+            {"compute_ms", choice.compute_ms}};
 }
 
 struct Devices : Command {
@@ -71,13 +95,13 @@ struct Devices : Command {
         if (devices.empty()) {
             throw Error("no Vulkan device found; install a driver, for a CPU mesa-vulkan-drivers");
         }
-        std::vector<Row> rows{
-            {"#", "name", "kind", "driver", "Vulkan", "memory", "compute", "hardware rasterizer"}};
+        std::vector<Row> rows{{"#", "name", "kind", "driver", "Vulkan", "memory", "compute",
+                               "hardware rasterizer", "direct takes"}};
         for (size_t i = 0; i < devices.size(); ++i) {
             const DeviceInfo& info = devices[i];
             rows.push_back({std::to_string(i), info.name, info.kind, info.driver, info.api_version,
                             human_bytes(info.memory_bytes), yes_or(info.why_not_compute),
-                            yes_or(info.why_not_hardware)});
+                            yes_or(info.why_not_hardware), describe(choose(info, i))});
         }
         print_table(rows);
         return 0;

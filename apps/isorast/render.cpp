@@ -234,15 +234,24 @@ struct Render : Command {
         view.camera(volume, {});  // a side that this volume does not have is said at once
         note_what_is_special(volume);
 
+        // Only mesh shaders make normals.
+        if (frame.shading == Shading::forward && options.rasterizer == Rasterizer::automatic)
+            options.rasterizer = Rasterizer::hardware;
         Gpu gpu(gpu_options);
         if (const std::string unfit = what_does_not_fit(gpu, volume, options); !unfit.empty()) {
             throw Error(unfit);
         }
         Renderer renderer(gpu, volume, options);
         note_isovalues_outside(volume.name, renderer.value_range());
-        if (options.technique == "auto" && !options.exact && !gpu.info().why_not_hardware.empty())
-            note(fmt::format("{}: {}: direct cannot run, {} instead", gpu.info().name,
-                             gpu.info().why_not_hardware, renderer.technique()));
+        if (options.rasterizer == Rasterizer::automatic && options.technique != "raymarch") {
+            const std::string problem = choose_rasterizer(gpu, volume.type).problem;
+            if (!problem.empty())
+                note(
+                    fmt::format("{}: the compute rasterizer fails its self-test ({}): {} with the "
+                                "{} rasterizer instead",
+                                gpu.info().name, problem, renderer.technique(),
+                                name_of(renderer.rasterizer())));
+        }
         frame.camera = view.camera(volume, renderer.surface_hull(frame.isovalues));
 
         std::vector<FrameStats> all_stats;

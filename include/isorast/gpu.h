@@ -27,6 +27,16 @@ struct DeviceInfo {
 // Every device that the loader knows, in its order; never throws for a device that does not fit.
 std::vector<DeviceInfo> list_devices();
 
+enum class Rasterizer : uint8_t { automatic, hardware, compute };
+
+// What `automatic` becomes for direct on a device; see choose_rasterizer() in <isorast/renderer.h>.
+struct RasterizerChoice {
+    Rasterizer rasterizer = Rasterizer::automatic;  // still automatic: neither works
+    // The median frame of a small scene, milliseconds; 0: not measured, as there was no choice.
+    double hardware_ms = 0, compute_ms = 0;
+    std::string problem;  // why the compute rasterizer is not to be trusted here; empty: it is
+};
+
 struct GpuOptions {
     // "" picks the best one: discrete, integrated, virtual, CPU; those with mesh shaders first.
     // Else a number from list_devices(), a part of a name, or "cpu".

@@ -14,7 +14,6 @@
 
 namespace isorast {
 
-enum class Rasterizer : uint8_t { automatic, hardware, compute };
 enum class Shading : uint8_t { gooch, phong, normals, depth, blocks, forward };
 // How occlusion culling finds hidden blocks: by raster proxies, as in the paper (needs the hardware
 // rasterizer), or by a depth pyramid (HiZ). The picture is the same.
@@ -34,7 +33,7 @@ std::optional<Occlusion> parse_occlusion(std::string_view word);
 std::optional<StereoMode> parse_stereo(std::string_view word);
 
 struct RendererOptions {
-    // One of techniques(); "auto": direct where the device has mesh shaders, else raymarch.
+    // One of techniques(); "auto": direct, or raymarch where direct cannot be had.
     std::string technique = "auto";
     Rasterizer rasterizer = Rasterizer::automatic;
     Occlusion occlusion = Occlusion::automatic;
@@ -105,6 +104,14 @@ std::string what_does_not_fit(const Gpu& gpu, const Volume& volume,
                               const RendererOptions& options = {}, uint32_t time_steps = 1);
 
 std::vector<std::string> techniques();
+
+// The rasterizer that direct uses on this device unless told otherwise. The first time, the compute
+// rasterizer draws a sphere that is compared with the formula, and where there is a choice, both
+// draw a small scene and the faster one wins. The answer is kept in the user's cache directory
+// (XDG_CACHE_HOME or ~/.cache), for this device, driver and version of isorast; where that cannot
+// be written, for the life of the Gpu. `type`: of the volume to be drawn, if there is one; the
+// sphere has the same, so that its shaders are compiled only once.
+RasterizerChoice choose_rasterizer(Gpu& gpu, VoxelType type = VoxelType::u8);
 
 class Renderer {
 public:

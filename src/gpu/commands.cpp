@@ -128,6 +128,11 @@ void Commands::fill(const Buffer& buffer, uint32_t value) {
     vkCmdFillBuffer(commands_, buffer.handle(), 0, VK_WHOLE_SIZE, value);
 }
 
+void Commands::clear(const Texture& texture, const VkClearColorValue& color) {
+    const VkImageSubresourceRange whole{texture.aspect(), 0, 1, 0, texture.layers()};
+    vkCmdClearColorImage(commands_, texture.handle(), VK_IMAGE_LAYOUT_GENERAL, &color, 1, &whole);
+}
+
 void Commands::copy_to_buffer(const Texture& from, const Buffer& to) {
     const VkBufferImageCopy region{.imageSubresource = {from.aspect(), 0, 0, from.layers()},
                                    .imageExtent = from.extent()};

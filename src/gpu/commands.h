@@ -21,6 +21,7 @@ class Device;
 struct Binding {
     Binding(const Buffer& from) : buffer(from.handle()) {}  // NOLINT(google-explicit-constructor)
     Binding(const Texture& from) : view(from.view()) {}     // NOLINT(google-explicit-constructor)
+    explicit Binding(VkImageView from) : view(from) {}
     VkBuffer buffer = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
 };
@@ -77,6 +78,7 @@ public:
     void copy(const Buffer& from, uint64_t from_offset, const Buffer& to, uint64_t to_offset,
               uint64_t bytes);
     void fill(const Buffer& buffer, uint32_t value);
+    void clear(const Texture& texture, const VkClearColorValue& color);  // not a depth image
     // All layers, one after the other, tightly packed.
     void copy_to_buffer(const Texture& from, const Buffer& to);
 

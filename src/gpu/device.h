@@ -5,6 +5,7 @@
 #include <vulkan/vulkan.h>
 
 #include <mutex>
+#include <optional>
 
 namespace isorast::gpu {
 
@@ -83,7 +84,10 @@ private:
     Functions functions_;
     DeviceInfo info_;
 
-public:  // for the messenger's callback only
+public:
+    // Kept here for choose_rasterizer().
+    mutable std::optional<RasterizerChoice> rasterizer_choice;
+    // For the messenger's callback only.
     mutable std::mutex messages_mutex;
     std::vector<std::string> validation_messages;
 };

@@ -54,6 +54,8 @@ struct ImageInfo {
     bool is_3d = false;
     uint32_t layers = 1;    // of a 2D image, which is an array to all shaders; at most 2
     bool uploaded = false;  // written on the upload queue too
+    // Its texels can be seen as R32_UINT too, for atomics: formats of 32 bits.
+    bool as_bits = false;
 };
 
 class Texture {
@@ -71,7 +73,8 @@ public:
     static uint64_t bytes_needed(const Device& device, const ImageInfo& info);
 
     VkImage handle() const { return image_; }
-    VkImageView view() const { return view_; }  // of a volume, or an array of all layers
+    VkImageView view() const { return view_; }            // of a volume, or an array of all layers
+    VkImageView bits_view() const { return bits_view_; }  // the same, ImageInfo::as_bits
     VkImageView layer_view(uint32_t layer) const { return layer_views_.at(layer); }  // a 2D image
     uint32_t layers() const { return info_.layers; }
     VkFormat format() const { return info_.format; }
@@ -81,11 +84,12 @@ public:
     explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
 private:
-    VkImageView make_view(VkImageViewType type, uint32_t layer, uint32_t layers) const;
+    VkImageView make_view(VkImageViewType type, VkFormat format, uint32_t layer,
+                          uint32_t layers) const;
     void swap(Texture& other) noexcept;
     const Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
-    VkImageView view_ = VK_NULL_HANDLE;
+    VkImageView view_ = VK_NULL_HANDLE, bits_view_ = VK_NULL_HANDLE;
     std::array<VkImageView, 2> layer_views_{};
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
     ImageInfo info_;

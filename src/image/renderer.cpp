@@ -14,14 +14,29 @@ namespace isorast {
 
 namespace {
 
-// "auto" becomes what the device can do.
-RendererOptions resolved(const Gpu& gpu, RendererOptions options) {
-    const bool direct = gpu.info().why_not_hardware.empty() &&
-                        gpu.device().features().mesh_shaders &&
-                        options.rasterizer != Rasterizer::compute && !options.exact;
-    if (options.technique == "auto") options.technique = direct ? "direct" : "raymarch";
+// "auto" becomes what the device does best.
+RendererOptions resolved(Gpu& gpu, VoxelType type, RendererOptions options) {
+    const bool automatic = options.technique == "auto";
+    if (automatic) options.technique = options.exact ? "raymarch" : "direct";
+    if (options.technique != "direct" || options.rasterizer != Rasterizer::automatic)
+        return options;
+    if (options.occlusion == Occlusion::raster) {
+        options.rasterizer = Rasterizer::hardware;
+        return options;
+    }
+    const RasterizerChoice choice = choose_rasterizer(gpu, type);
+    options.rasterizer = choice.rasterizer;
+    if (choice.rasterizer != Rasterizer::automatic) return options;
+    if (!automatic)
+        throw Error(
+            fmt::format("direct: {} has no hardware rasterizer ({}) and fails the compute "
+                        "rasterizer's self-test ({}); use --technique raymarch",
+                        gpu.info().name, gpu.info().why_not_hardware, choice.problem));
+    options.technique = "raymarch";
     return options;
 }
+
+}  // namespace
 
 std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
     std::string known;
@@ -33,13 +48,11 @@ std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
         fmt::format("technique: expected one of {}, found '{}'", known, context.options.technique));
 }
 
-}  // namespace
-
 Renderer::State::State(Gpu& gpu, const Series& series, const RendererOptions& options)
     : device_(gpu.device()),
-      options_(resolved(gpu, options)),
       grid_(device_, series, options.max_brick_side, options.step_bytes),
       placement_{grid_.header().affine, grid_.header().dims},
+      options_(resolved(gpu, grid_.header().type, options)),
       technique_(make_technique({grid_, options_})),
       shade_(grid_) {
     for (uint32_t i = 0; i < std::max(options.frames_in_flight, 1u); ++i)
@@ -65,7 +78,9 @@ void Renderer::State::record(gpu::Commands& commands, const Frame& frame,
         throw Error(fmt::format("{}: expected a time step from 0 to {}, found {}",
                                 grid_.header().name, grid_.steps().count() - 1, frame.time_step));
     if (frame.shading == Shading::forward && !technique_->can_shade_forward())
-        throw Error(fmt::format("shading: {} cannot shade forward; use gooch", options_.technique));
+        throw Error(
+            fmt::format("shading: {} with the {} rasterizer cannot shade forward; use gooch",
+                        options_.technique, name_of(technique_->rasterizer())));
     // These commands' last use is over, and with it its step's.
     step.reset();
     std::vector<uint32_t> in_flight;

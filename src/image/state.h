@@ -16,6 +16,9 @@
 
 namespace isorast {
 
+// The technique that the options name. Throws Error when there is none, or the device cannot.
+std::unique_ptr<Technique> make_technique(const TechniqueContext& context);
+
 class Renderer::State {
 public:
     State(Gpu& gpu, const Series& series, const RendererOptions& options);
@@ -40,9 +43,9 @@ private:
     void collect_stats(const gpu::Slot& slot);
 
     const gpu::Device& device_;
-    RendererOptions options_;
     Grid grid_;
     Placement placement_;
+    RendererOptions options_;
     std::unique_ptr<Technique> technique_;
     Shade shade_;
     Target target_;

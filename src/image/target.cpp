@@ -28,16 +28,22 @@ void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame
     eyes = frame.eyes();
     const VkExtent3D whole{size.width, size.height, 1}, one{1, 1, 1};
     const VkImageUsageFlags always = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    const VkImageUsageFlags storage = always | VK_IMAGE_USAGE_STORAGE_BIT;
+    const VkImageUsageFlags storage =
+        always | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     const VkImageUsageFlags both =
         storage |
         (device.has_graphics() ? VkImageUsageFlags{VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT} : 0u);
     const VkImageUsageFlags attachment = always | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     const auto make = [&](gpu::Texture& texture, VkFormat format, VkExtent3D extent,
                           VkImageUsageFlags usage, const char* what) {
-        texture = gpu::Texture(
-            device, {.format = format, .extent = extent, .usage = usage, .layers = frame.eyes()},
-            what);
+        const bool as_bits = format == VK_FORMAT_R32_SFLOAT;
+        texture = gpu::Texture(device,
+                               {.format = format,
+                                .extent = extent,
+                                .usage = usage,
+                                .layers = frame.eyes(),
+                                .as_bits = as_bits},
+                               what);
         commands.discard_to_general(texture);
     };
     make(color, VK_FORMAT_R8G8B8A8_UNORM, whole, both, "the picture");

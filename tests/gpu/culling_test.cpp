@@ -46,70 +46,54 @@ bool same_bits(const Image& a, const Image& b) {
            std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * sizeof(float)) == 0;
 }
 
-// A renderer for each occlusion test that the device can do: HiZ by itself, where there are no mesh
-// shaders; and what they count.
-struct Culled {
+// direct with each of the device's rasterizers, and each occlusion test that it can have.
+struct Way {
+    Rasterizer rasterizer;
     Occlusion occlusion;
-    Renderer renderer;
-    uint64_t drawn = 0;
 };
 
-std::vector<Culled> culled_by_each(Gpu& gpu, const Volume& volume) {
-    std::vector<Culled> result;
-    const bool has_both = gpu.info().why_not_hardware.empty();
-    for (Occlusion occlusion : {Occlusion::hiz, Occlusion::raster})
-        if (has_both)
-            result.push_back(
-                {occlusion,
-                 Renderer(gpu, volume, {.technique = "direct", .occlusion = occlusion})});
-    if (!has_both) result.push_back({Occlusion::automatic, Renderer(gpu, volume)});
-    return result;
-}
+class Culling : public GpuTest, public testing::WithParamInterface<Way> {
+protected:
+    void SetUp() override {
+        const bool hardware = GetParam().rasterizer == Rasterizer::hardware;
+        if (hardware && (GRAPHICS_CRASHES || !gpu.info().why_not_hardware.empty())) GTEST_SKIP();
+    }
+    const RendererOptions options{.technique = "direct",
+                                  .rasterizer = GetParam().rasterizer,
+                                  .occlusion = GetParam().occlusion};
+};
+INSTANTIATE_TEST_SUITE_P(Direct, Culling,
+                         testing::Values(Way{Rasterizer::hardware, Occlusion::hiz},
+                                         Way{Rasterizer::hardware, Occlusion::raster},
+                                         Way{Rasterizer::compute, Occlusion::hiz}),
+                         [](const auto& each) {
+                             return fmt::format("{}_{}", name_of(each.param.rasterizer),
+                                                name_of(each.param.occlusion));
+                         });
 
-TEST_F(GpuTest, OcclusionCullingChangesNoBitOnAnyWalk) {
-    if (GRAPHICS_CRASHES) GTEST_SKIP();
+TEST_P(Culling, ChangesNoBitOnAnyWalk) {
     const Volume volume = reference::sampled("noise:56:octaves=3:type=u8");
-    auto tests = culled_by_each(gpu, volume);
-    Renderer whole(gpu, volume);
+    Renderer culled(gpu, volume, options), whole(gpu, volume, options);
     Walk walk(volume);
     const int frames = std::getenv("ISORAST_QUICK") ? 60 : 500;
-    uint64_t drawn_whole = 0;
+    uint64_t drawn_culled = 0, drawn_whole = 0;
     double isovalue = 0.5;
     for (int i = 0; i < frames; ++i) {
         if (i % 7 == 0) isovalue = walk.uniform(0.35, 0.65);
         Frame f = frame(walk.step(), {isovalue});
         f.size = {160, 120};
+        const Image a = culled.render(f);
         f.culling = false;
-        const Image expected = whole.render(f);
+        ASSERT_TRUE(same_bits(a, whole.render(f))) << "frame " << i;
+        drawn_culled += culled.stats().blocks_drawn;
         drawn_whole += whole.stats().blocks_drawn;
-        f.culling = true;
-        for (Culled& culled : tests) {
-            ASSERT_TRUE(same_bits(culled.renderer.render(f), expected))
-                << "frame " << i << ", " << name_of(culled.occlusion);
-            culled.drawn += culled.renderer.stats().blocks_drawn;
-        }
     }
-    if (tests[0].renderer.technique() == "direct") {
-        for (const Culled& culled : tests)
-            EXPECT_LT(culled.drawn, drawn_whole * 9 / 10) << name_of(culled.occlusion);
-    }
-    // A quad at a block's nearest depth is a tighter test than squares of pixels.
-    if (tests.size() > 1) {
-        EXPECT_LT(tests[1].drawn, tests[0].drawn);
-    }
+    EXPECT_LT(drawn_culled, drawn_whole * 9 / 10);
 }
 
-TEST_F(GpuTest, AnOcclusionTestThatATechniqueLacksIsAnError) {
-    const Volume volume = make_procedural("sphere:16");
-    for (Occlusion occlusion : {Occlusion::hiz, Occlusion::raster})
-        EXPECT_THROW(Renderer(gpu, volume, {.technique = "raymarch", .occlusion = occlusion}),
-                     Error);
-}
-
-TEST_F(GpuTest, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
-    if (GRAPHICS_CRASHES) GTEST_SKIP();
+TEST_P(Culling, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
     const Volume volume = make_procedural("noise:256:type=u8");
-    Renderer culled(gpu, volume), whole(gpu, volume);
+    Renderer culled(gpu, volume, options), whole(gpu, volume, options);
     Frame f = frame(orbit(volume, 30, 20), {0.5});
     f.size = {960, 540};
     const Image cold = culled.render(f);
@@ -120,32 +104,37 @@ TEST_F(GpuTest, AGuessAfterACutChangesNoBitAndAWarmFrameDrawsLess) {
     const Image expected = whole.render(f);
     EXPECT_TRUE(same_bits(cold, expected));
     EXPECT_TRUE(same_bits(warm, expected));
-    if (culled.technique() == "direct") {
-        EXPECT_LT(drawn_cold, whole.stats().blocks_drawn);
-        EXPECT_LT(drawn_warm, drawn_cold * 9 / 10);
-    }
+    EXPECT_LT(drawn_cold, whole.stats().blocks_drawn);
+    EXPECT_LT(drawn_warm, drawn_cold * 9 / 10);
 }
 
-TEST_F(GpuTest, CullingHoldsForForwardShadingAndSeveralSurfaces) {
-    if (GRAPHICS_CRASHES) GTEST_SKIP();
+TEST_P(Culling, HoldsForForwardShadingAndSeveralSurfaces) {
     const Volume volume = reference::sampled("noise:48:octaves=3:type=u8");
-    auto tests = culled_by_each(gpu, volume);
-    Renderer whole(gpu, volume);
+    Renderer culled(gpu, volume, options), whole(gpu, volume, options);
     Walk walk(volume);
     for (int i = 0; i < 20; ++i) {
         Frame f = frame(walk.step(), {0.45, 0.6});
         f.size = {160, 120};
-        if (i % 2 && whole.technique() == "direct") {
+        if (i % 2 && GetParam().rasterizer == Rasterizer::hardware) {
             f.shading = Shading::forward;
             f.isovalues = {0.5};
         }
+        const Image a = culled.render(f);
         f.culling = false;
-        const Image expected = whole.render(f);
-        f.culling = true;
-        for (Culled& culled : tests)
-            ASSERT_TRUE(same_bits(culled.renderer.render(f), expected))
-                << "frame " << i << ", " << name_of(culled.occlusion);
+        ASSERT_TRUE(same_bits(a, whole.render(f))) << "frame " << i;
     }
+}
+
+TEST_F(GpuTest, AnOcclusionTestThatIsNotThereIsAnError) {
+    const Volume volume = make_procedural("sphere:16");
+    for (Occlusion occlusion : {Occlusion::hiz, Occlusion::raster})
+        EXPECT_THROW(Renderer(gpu, volume, {.technique = "raymarch", .occlusion = occlusion}),
+                     Error);
+    EXPECT_THROW(Renderer(gpu, volume,
+                          {.technique = "direct",
+                           .rasterizer = Rasterizer::compute,
+                           .occlusion = Occlusion::raster}),
+                 Error);
 }
 
 }  // namespace

@@ -66,8 +66,10 @@ TEST_F(GpuTest, AHostWithoutWhatATechniqueNeedsIsTold) {
     host.mesh_shaders = false;
     Gpu adopted(host);
     const Volume volume = reference::sampled("torus:16");
-    EXPECT_THROW(Renderer(adopted, volume, {.technique = "direct"}), Error);
-    EXPECT_EQ(Renderer(adopted, volume).technique(), "raymarch");
+    EXPECT_THROW(
+        Renderer(adopted, volume, {.technique = "direct", .rasterizer = Rasterizer::hardware}),
+        Error);
+    EXPECT_EQ(Renderer(adopted, volume).rasterizer(), Rasterizer::compute);
     host.storage_16bit = false;
     EXPECT_THROW(Gpu{host}, Error);
 }

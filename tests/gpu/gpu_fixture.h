@@ -25,6 +25,10 @@ inline const int VECTOR_BITS = [] {
 // only.
 inline const bool GRAPHICS_CRASHES = VECTOR_BITS >= 512;
 
+// What is found out about a device under validation stays out of the user's cache.
+inline const bool OWN_CACHE =
+    setenv("XDG_CACHE_HOME", ISORAST_BINARY_DIR "/test-cache", /* overwrite= */ 1) == 0;
+
 struct Lane {
     std::string name;
     isorast::RendererOptions options;
@@ -47,7 +51,7 @@ protected:
     }
 
     // A renderer for each technique and rasterizer that the device has. Every technique must have
-    // one, unless the device lacks mesh shaders. RendererOptions::exact goes to those that know it.
+    // one. RendererOptions::exact goes to those that know it.
     std::vector<Lane> lanes(const isorast::Volume& volume, isorast::RendererOptions options = {}) {
         std::vector<Lane> result;
         for (const std::string& technique : isorast::techniques()) {
@@ -63,9 +67,7 @@ protected:
                     add_lane(volume, stepping, result, refusals);
                 }
             }
-            EXPECT_TRUE(result.size() > before || GRAPHICS_CRASHES ||
-                        !gpu.info().why_not_hardware.empty())
-                << technique << " refuses:" << refusals;
+            EXPECT_GT(result.size(), before) << technique << " refuses:" << refusals;
         }
         EXPECT_FALSE(result.empty());
         return result;

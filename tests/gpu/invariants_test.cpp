@@ -3,6 +3,7 @@
 // formula is sampled, the type that voxels are stored in; and what techniques must agree on.
 #include <cstring>
 
+#include "gpu/device.h"
 #include "gpu/gpu_fixture.h"
 
 namespace {
@@ -21,8 +22,10 @@ double diagonal(const Volume& volume) {
     return glm::length(high - low);
 }
 
-// The same coverage, depths within 1e-6 of the box's diagonal, colours within one step of 255.
-void expect_same(const Image& a, const Image& b, double range, const std::string& what) {
+// The same coverage, depths within 1e-6 of the box's diagonal, colours within one step of 255;
+// `other` pixels may differ.
+void expect_same(const Image& a, const Image& b, double range, const std::string& what,
+                 uint64_t other = 0) {
     uint64_t coverage = 0, over = 0;
     for (size_t i = 0; i < a.depth.size(); ++i) {
         bool hit = std::isfinite(a.depth[i]);
@@ -32,9 +35,9 @@ void expect_same(const Image& a, const Image& b, double range, const std::string
             over += std::abs(double(a.depth[i]) - double(b.depth[i])) > 1e-6 * range;
         }
     }
-    EXPECT_EQ(coverage, 0u) << what << ": pixels covered in one and not in the other";
-    EXPECT_EQ(over, 0u) << what << ": pixels with another depth";
-    EXPECT_EQ(compare(a, b, 1).pixels_over, 0u) << what << ": pixels with another colour";
+    EXPECT_LE(coverage, other) << what << ": pixels covered in one and not in the other";
+    EXPECT_LE(over, other) << what << ": pixels with another depth";
+    EXPECT_LE(compare(a, b, 1).pixels_over, other) << what << ": pixels with another colour";
 }
 
 const std::vector<std::string> SCENES{"noise:64:octaves=4:type=u8", "gyroid:48x64x40"};
@@ -69,6 +72,7 @@ TEST_F(GpuTest, AFrameDoesNotDependOnThoseBefore) {
 }
 
 TEST_F(GpuTest, BricksLeaveNoSeam) {
+    if (!gpu.device().features().nonuniform_textures) GTEST_SKIP();
     for (const std::string& name : SCENES) {
         Volume volume = sampled(name);
         double level = suggest_isovalue(volume, statistics(volume));
@@ -93,10 +97,14 @@ TEST_F(GpuTest, RasterizersOfATechniqueAgree) {
     auto all = lanes(volume);
     for (size_t lane = 1; lane < all.size(); ++lane) {
         if (all[lane].options.technique != all[lane - 1].options.technique) continue;
+        // Devices differ in the last bits of a triangle's depth; now and then that decides which
+        // cell a hit is refined in. What direct's shader writes: rasterizer_test.cpp.
+        const uint64_t other =
+            all[lane].options.technique == "direct" ? SIZE.width * SIZE.height / 10000 : 0;
         for (int index = 0; index < view_count(6); ++index) {
             Frame f = frame(view(volume, index), {0});
             expect_same(all[lane].renderer.render(f), all[lane - 1].renderer.render(f),
-                        diagonal(volume), fmt::format("{}, view {}", all[lane].name, index));
+                        diagonal(volume), fmt::format("{}, view {}", all[lane].name, index), other);
         }
     }
 }

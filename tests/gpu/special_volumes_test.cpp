@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Volumes and isovalues at the edge of what is defined: each has one documented picture.
+#include "gpu/device.h"
 #include "gpu/gpu_fixture.h"
 #include "reference/trilinear.h"
 
@@ -63,6 +64,7 @@ TEST_F(GpuTest, AVolumeOneVoxelThinIsEmptyAndTwoIsNot) {
 
 // More bricks than one, and a pyramid of 13 levels.
 TEST_F(GpuTest, AVeryLongVolume) {
+    if (!gpu.device().features().nonuniform_textures) GTEST_SKIP();
     Volume volume = volume_of<uint8_t>(
         {20000, 3, 3}, VoxelType::u8,
         [](uint32_t i, uint32_t j, uint32_t k) { return (i / 4 * 37 + 60 * j + 20 * k) % 256; });

@@ -34,7 +34,7 @@ glm::dvec3 to_vec(const std::array<double, 3>& v) {
 
 }  // namespace
 
-Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion)
+Culling::Culling(const Grid& grid, uint32_t workgroups, std::unique_ptr<OcclusionTest> occlusion)
     : grid_(grid), occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
@@ -45,7 +45,7 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion)
     draws_ = gpu::Buffer(device, draw_bytes, Memory::device, "draw arguments");
     empty_draws_ = gpu::Buffer(device, draw_bytes, Memory::host, "draw arguments");
     for (uint32_t i = 0; i < chunks_; ++i)
-        empty_draws_.data<VkDrawMeshTasksIndirectCommandEXT>()[i] = {0, 2, 1};
+        empty_draws_.data<VkDrawMeshTasksIndirectCommandEXT>()[i] = {0, workgroups, 1};
     counters_ = gpu::Buffer(device, sizeof(shared::Counters), Memory::device, "counters");
     for (gpu::Buffer& visible : visible_)
         visible = gpu::Buffer(device, uint64_t{4} * groups, Memory::device, "visible blocks");

@@ -15,7 +15,8 @@ namespace isorast {
 
 class Culling {
 public:
-    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion);
+    // `workgroups`: how many draw a block, the y of draws().
+    Culling(const Grid& grid, uint32_t workgroups, std::unique_ptr<OcclusionTest> occlusion);
 
     // The active groups of each surface: once an isovalue.
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
@@ -37,9 +38,8 @@ public:
     // A chunk is 32768 blocks: entry e of chunk c, a block's 16-bit place in the chunk, is at
     // [c * 32768 + e].
     const gpu::Buffer& drawn_blocks() const { return drawn_blocks_; }
-    const gpu::Buffer& draws() const {
-        return draws_;
-    }  // VkDrawMeshTasksIndirectCommandEXT a chunk
+    // A chunk's blocks, workgroups for each, 1: arguments of an indirect dispatch or mesh draw.
+    const gpu::Buffer& draws() const { return draws_; }
     uint32_t chunks() const { return chunks_; }
     const gpu::Buffer& counters() const { return counters_; }
     uint64_t gpu_bytes() const;

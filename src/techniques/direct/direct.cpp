@@ -7,8 +7,10 @@
 
 #include <array>
 
+#include "gpu/device.h"
+#include "shaders/marching_cubes.h"
 #include "techniques/direct/culling.h"
-#include "techniques/direct/hardware.h"
+#include "techniques/direct/rasterizer.h"
 #include "techniques/technique.h"
 
 namespace isorast {
@@ -17,18 +19,27 @@ namespace {
 
 using gpu::Commands;
 
+gpu::Buffer upload_cases(const gpu::Device& device) {
+    const CaseTable table = marching_cubes_table();
+    gpu::Buffer cases(device, sizeof(table.packed), gpu::Buffer::Memory::device, "marching cubes");
+    gpu::run_once(device, [&](Commands& commands) {
+        commands.update(cases, 0, table.packed.data(), sizeof(table.packed));
+    });
+    return cases;
+}
+
 class Direct final : public Technique {
 public:
     explicit Direct(const TechniqueContext& context);
 
-    Rasterizer rasterizer() const override { return Rasterizer::hardware; }
-    bool can_shade_forward() const override { return true; }
+    Rasterizer rasterizer() const override { return kind_; }
     Occlusion occlusion() const override { return culling_.occlusion(); }
+    bool can_shade_forward() const override { return kind_ == Rasterizer::hardware; }
     void prepare(Commands& commands, const std::vector<float>& isovalues) override {
         culling_.find_active(commands, isovalues);
     }
     void record(Commands& commands, const Frame& frame, Target& target) override;
-    uint64_t gpu_bytes() const override { return hardware_.gpu_bytes() + culling_.gpu_bytes(); }
+    uint64_t gpu_bytes() const override { return cases_.bytes() + culling_.gpu_bytes(); }
     const gpu::Buffer* counters() const override { return &culling_.counters(); }
 
 private:
@@ -36,29 +47,41 @@ private:
     // list.
     void draw(Commands& commands, const Frame& frame, const Target& target, Culling::Select which);
 
-    HardwareRasterizer hardware_;
+    Rasterizer kind_;
     Culling culling_;
+    gpu::Buffer cases_;  // marching cubes: 256 x uvec2
+    std::unique_ptr<DirectRasterizer> rasterizer_;
 };
 
+// A workgroup a block in compute; the paper's task shader takes half a block.
+uint32_t workgroups_per_block(Rasterizer rasterizer) {
+    return rasterizer == Rasterizer::compute ? 1 : 2;
+}
+
 std::unique_ptr<OcclusionTest> make_occlusion_test(const TechniqueContext& context) {
-    return context.options.occlusion == Occlusion::raster ? make_raster_proxies(context.grid)
-                                                          : make_depth_pyramid(context.grid);
+    if (context.options.occlusion != Occlusion::raster) return make_depth_pyramid(context.grid);
+    if (context.options.rasterizer == Rasterizer::compute)
+        throw Error(
+            "direct: raster proxies need the hardware rasterizer; use --culling hiz, or "
+            "--rasterizer hardware");
+    return make_raster_proxies(context.grid);
 }
 
 Direct::Direct(const TechniqueContext& context)
-    : hardware_(context), culling_(context.grid, make_occlusion_test(context)) {
+    : kind_(context.options.rasterizer),
+      culling_(context.grid, workgroups_per_block(context.options.rasterizer),
+               make_occlusion_test(context)),
+      cases_(upload_cases(context.grid.device())) {
     if (context.options.exact) throw Error("direct: has no exact way; use --technique raymarch");
-    if (context.options.rasterizer == Rasterizer::compute)
-        throw Error(
-            "direct: has no compute rasterizer yet; use --rasterizer hardware, or --technique "
-            "raymarch");
+    rasterizer_ = kind_ == Rasterizer::compute ? make_compute(context.grid, cases_)
+                                               : make_hardware(context.grid, cases_);
 }
 
 void Direct::record(Commands& commands, const Frame& frame, Target& target) {
     culling_.begin_frame(commands, frame, target);
     {
         const auto pass = commands.pass("clear");
-        hardware_.clear(commands, frame, target);
+        rasterizer_->clear(commands, frame, target);
     }
     if (!frame.culling) return draw(commands, frame, target, Culling::Select::all);
     draw(commands, frame, target, Culling::Select::seen);
@@ -78,7 +101,7 @@ void Direct::draw(Commands& commands, const Frame& frame, const Target& target,
             culling_.select(commands, surface, which);
         }
         const auto pass = commands.pass(EXTRACT[size_t(which)]);
-        hardware_.extract(commands, culling_, surface, frame, target);
+        rasterizer_->draw(commands, frame, surface, culling_, target);
     }
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Pipelines of task, mesh and fragment shaders, and their draws.
-#include "techniques/direct/hardware.h"
-
+// Blocks to triangles by task and mesh shaders, rasterized by the device (Kreskowski 2022, section
+// 3.4).
 #include <fmt/format.h>
 #include <isorast/error.h>
 
-#include "clip_frag.h"
-#include "clip_stereo_frag.h"
+#include <array>
+
+#include "clipped_frag.h"
+#include "clipped_stereo_frag.h"
 #include "extract_forward_mesh.h"
 #include "extract_forward_stereo_mesh.h"
 #include "extract_mesh.h"
@@ -15,9 +16,9 @@
 #include "forward_frag.h"
 #include "forward_stereo_frag.h"
 #include "gpu/device.h"
-#include "shaders/marching_cubes.h"
 #include "surface_number_frag.h"
 #include "surface_number_stereo_frag.h"
+#include "techniques/direct/rasterizer.h"
 
 namespace isorast {
 
@@ -25,10 +26,6 @@ namespace {
 
 using gpu::Commands;
 using gpu::Kind;
-
-struct DrawPush {
-    uint32_t chunk, surface;
-};
 
 // What a picture is drawn into beside depth.
 enum class Colors : uint8_t { none, numbers, shaded };
@@ -55,25 +52,36 @@ std::vector<VkFormat> color_formats(Colors colors) {
     return {colors == Colors::shaded ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32_UINT};
 }
 
-}  // namespace
+class Hardware final : public DirectRasterizer {
+public:
+    Hardware(const Grid& grid, const gpu::Buffer& cases);
 
-HardwareRasterizer::HardwareRasterizer(const TechniqueContext& context) : grid_(context.grid) {
-    const gpu::Device& device = grid_.device();
+    void clear(Commands& commands, const Frame& frame, const Target& target) override;
+    void draw(Commands& commands, const Frame& frame, uint32_t surface, const Culling& culling,
+              const Target& target) override;
+
+private:
+    struct Push {
+        uint32_t chunk, surface;
+    };
+    const gpu::Pipeline& pipeline(const Frame& frame);
+
+    const Grid& grid_;
+    const gpu::Buffer& cases_;
+    std::array<gpu::Pipeline, 12> pipelines_;  // made when first needed
+};
+
+Hardware::Hardware(const Grid& grid, const gpu::Buffer& cases) : grid_(grid), cases_(cases) {
+    const gpu::Device& device = grid.device();
     if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
         throw Error(fmt::format(
-            "direct: {} cannot run its hardware rasterizer: {}; use --technique raymarch",
+            "direct: {} cannot run its hardware rasterizer: {}; use --rasterizer compute",
             device.info().name,
             device.info().why_not_hardware.empty() ? "mesh shaders are not enabled"
                                                    : device.info().why_not_hardware));
-    const CaseTable table = marching_cubes_table();
-    cases_ =
-        gpu::Buffer(device, sizeof(table.packed), gpu::Buffer::Memory::device, "marching cubes");
-    gpu::run_once(device, [&](Commands& commands) {
-        commands.update(cases_, 0, table.packed.data(), sizeof(table.packed));
-    });
 }
 
-const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
+const gpu::Pipeline& Hardware::pipeline(const Frame& frame) {
     const Colors colors = colors_of(frame);
     const bool stereo = frame.eyes() > 1, clipped = !frame.clips.empty();
     gpu::Pipeline& pipeline = pipelines_[size_t(colors) + 3 * stereo + 6 * clipped];
@@ -86,8 +94,8 @@ const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
     const Code stereo_mesh =
         forward ? grid_.pick(extract_forward_stereo_mesh, extract_forward_stereo_mesh_bricked)
                 : grid_.pick(extract_stereo_mesh, extract_stereo_mesh_bricked);
-    const std::array<Code, 3> fragment{clip_frag, surface_number_frag, forward_frag};
-    const std::array<Code, 3> stereo_fragment{clip_stereo_frag, surface_number_stereo_frag,
+    const std::array<Code, 3> fragment{clipped_frag, surface_number_frag, forward_frag};
+    const std::array<Code, 3> stereo_fragment{clipped_stereo_frag, surface_number_stereo_frag,
                                               forward_stereo_frag};
     std::vector<gpu::Shader> shaders{
         {VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)},
@@ -96,13 +104,13 @@ const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
         shaders.push_back(
             {VK_SHADER_STAGE_FRAGMENT_BIT, (stereo ? stereo_fragment : fragment)[size_t(colors)]});
     const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer},
-                                          sizeof(DrawPush), {clipped});
+                                          sizeof(Push), {clipped});
     pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders,
                                        {color_formats(colors), VK_FORMAT_D32_SFLOAT});
     return pipeline;
 }
 
-void HardwareRasterizer::clear(Commands& commands, const Frame& frame, const Target& target) const {
+void Hardware::clear(Commands& commands, const Frame& frame, const Target& target) {
     const Color& b = frame.background;
     VkClearColorValue color{};
     if (frame.shading == Shading::forward) color = {{b.r, b.g, b.b, b.a}};
@@ -111,17 +119,23 @@ void HardwareRasterizer::clear(Commands& commands, const Frame& frame, const Tar
     commands.barrier();
 }
 
-void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uint32_t surface,
-                                 const Frame& frame, const Target& target) {
+void Hardware::draw(Commands& commands, const Frame& frame, uint32_t surface,
+                    const Culling& culling, const Target& target) {
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
     commands.bind(pipeline(frame), {culling.drawn_blocks(), cases_});
     for (uint32_t chunk = 0; chunk < culling.chunks(); ++chunk) {
-        commands.push(DrawPush{chunk, surface});
+        commands.push(Push{chunk, surface});
         commands.draw_mesh_tasks_indirect(culling.draws(),
                                           chunk * sizeof(VkDrawMeshTasksIndirectCommandEXT));
     }
     commands.end_rendering();
     commands.barrier();
+}
+
+}  // namespace
+
+std::unique_ptr<DirectRasterizer> make_hardware(const Grid& grid, const gpu::Buffer& cases) {
+    return std::make_unique<Hardware>(grid, cases);
 }
 
 }  // namespace isorast

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// No hole, ever: along each pixel's ray a closed surface is entered as often as it is left. The
+// compute rasterizer, built to count instead of keeping the nearest depth (rasterize.comp,
+// COUNTING), adds 1 for each front face and takes 1 for each back face: the sum is 0 at every
+// pixel. The surface is a shell of random voxels at and around the isovalue; views go from many
+// triangles in a pixel to triangles larger than the picture.
+#include <isorast/image.h>
+
+#include <random>
+
+#include "gpu/gpu_fixture.h"
+#include "image/view.h"
+#include "rasterize_counting.h"
+#include "shaders/marching_cubes.h"
+#include "techniques/direct/culling.h"
+
+namespace {
+
+using namespace isorast;
+using gpu::Kind;
+using Memory = gpu::Buffer::Memory;
+
+class Counting {
+public:
+    Counting(const gpu::Device& device, const Volume& volume, Size size)
+        : grid_(device, series_of({&volume, 1}), 0, 0),
+          culling_(grid_, 1, make_depth_pyramid(grid_)),
+          placement_{volume.affine, volume.dims},
+          bytes_(uint64_t{4} * size.width * size.height) {
+        const CaseTable table = marching_cubes_table();
+        cases_ = gpu::Buffer(device, sizeof(table.packed), Memory::device, "a test");
+        counts_ =
+            gpu::Texture(device,
+                         {.format = VK_FORMAT_R32_UINT,
+                          .extent = {size.width, size.height, 1},
+                          .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                   VK_IMAGE_USAGE_TRANSFER_DST_BIT},
+                         "a test");
+        read_ = gpu::Buffer(device, bytes_, Memory::host, "a test");
+        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::image, Kind::image};
+        pipeline_ = gpu::Pipeline::compute(device, grid_.pipeline_info("counting", bindings, 8),
+                                           rasterize_counting);
+        gpu::run_once(device, [&](gpu::Commands& commands) {
+            commands.update(cases_, 0, table.packed.data(), sizeof(table.packed));
+            commands.discard_to_general(counts_);
+        });
+    }
+
+    // Front faces less back faces, of each pixel.
+    std::span<const int32_t> count(const Frame& frame) {
+        gpu::run_once(grid_.device(), [&](gpu::Commands& commands) {
+            Target none;
+            grid_.begin_frame(commands, make_frame_info(frame, placement_, grid_.stored()));
+            culling_.find_active(commands, {grid_.stored().from_value(frame.isovalues[0])});
+            culling_.begin_frame(commands, frame, none);
+            commands.clear(counts_, {});
+            commands.barrier();
+            culling_.select(commands, 0, Culling::Select::all);
+            commands.bind(pipeline_, {culling_.drawn_blocks(), cases_, counts_, counts_});
+            commands.push(std::array<uint32_t, 2>{0, 0});
+            commands.dispatch_indirect(culling_.draws(), 0);
+            commands.barrier();
+            commands.copy_to_buffer(counts_, read_);
+        });
+        return {read_.data<int32_t>(), bytes_ / 4};
+    }
+
+private:
+    Grid grid_;
+    Culling culling_;
+    Placement placement_;
+    uint64_t bytes_;
+    gpu::Buffer cases_, read_;
+    gpu::Texture counts_;
+    gpu::Pipeline pipeline_;
+};
+
+uint64_t not_zero(std::span<const int32_t> counts) {
+    return uint64_t(counts.size() - std::ranges::count(counts, 0));
+}
+
+TEST_F(GpuTest, FrontFacesLessBackFacesIsZeroAtEveryPixel) {
+    const Size size{96, 72};
+    std::mt19937 random(5);
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    const int views = std::getenv("ISORAST_QUICK") ? 20 : 250;
+    for (uint32_t side : {6u, 15u, 24u, 40u}) {
+        const Volume volume = reference::random_blob(side, side);
+        Counting counting(gpu.device(), volume, size);
+        for (int i = 0; i < views; ++i) {
+            const OrbitOptions options{.roll_degrees = uniform(0, 360),
+                                       .zoom = std::exp(uniform(-3, 2.5)),
+                                       .orthographic = uniform(0, 1) < 0.5};
+            Frame f = frame(orbit(volume, uniform(0, 360), uniform(-89, 89), options), {100});
+            f.size = size;
+            f.culling = false;
+            ASSERT_EQ(not_zero(counting.count(f)), 0u) << "side " << side << ", view " << i;
+        }
+    }
+}
+
+TEST_F(GpuTest, AnOpenSurfaceIsSeenToBeOpen) {
+    const Size size{96, 72};
+    const Volume volume = reference::sampled("gyroid:24");
+    Frame f = frame(orbit(volume, 30, 20), {0});
+    f.size = size;
+    f.culling = false;
+    EXPECT_GT(not_zero(Counting(gpu.device(), volume, size).count(f)), 500u);
+}
+
+}  // namespace
