@@ -112,10 +112,15 @@ struct Render : Command {
                      "raymarch: solve each cell's cubic instead of stepping")
             ->group("Surface");
         app.add_option_function<std::string>(
-               "--culling", [this](const std::string& word) { frame.culling = word == "on"; },
-               "Skip what is out of view: on (default) or off")
-            ->type_name("on|off")
-            ->check(CLI::IsMember({"on", "off"}).description(""))
+               "--culling",
+               [this](const std::string& word) {
+                   frame.culling = word != "off";
+                   if (frame.culling) options.occlusion = parse_occlusion(word).value();
+               },
+               "Skip what is out of view or hidden: auto (default), by raster proxies, by a depth "
+               "pyramid (hiz), or off")
+            ->type_name("auto|raster|hiz|off")
+            ->check(CLI::IsMember({"auto", "raster", "hiz", "off"}).description(""))
             ->group("Surface");
     }
 
@@ -209,6 +214,10 @@ struct Render : Command {
             throw CLI::ValidationError("--json",
                                        "standard output takes the picture; name a file with -o");
         }
+        if (view.stereo.mode == StereoMode::layers && (output == "-" || !reference.empty()))
+            throw CLI::ValidationError("--stereo",
+                                       "layers makes two files: name them with -o, and "
+                                       "compare them with isorast compare");
         if (transparent) frame.background.a = 0;
 
         const Volume volume = load_volume(arguments.input, arguments.load);
@@ -220,6 +229,8 @@ struct Render : Command {
                 "--color", fmt::format("{} colors for {} isovalues", frame.colors.size(),
                                        frame.isovalues.size()));
         }
+        frame.clips = view.clip_planes(volume);
+        frame.stereo = view.stereo;
         view.camera(volume, {});  // a side that this volume does not have is said at once
         note_what_is_special(volume);
 
@@ -257,6 +268,7 @@ struct Render : Command {
                             .isovalues = frame.isovalues,
                             .technique = renderer.technique(),
                             .rasterizer = std::string(name_of(renderer.rasterizer())),
+                            .culling = culling_of(renderer),
                             .device = gpu.info().name,
                             .driver = gpu.info().driver,
                             .value_range = renderer.value_range(),
@@ -269,6 +281,12 @@ struct Render : Command {
         print(report);
         const bool differs = report.difference && report.difference->pixels_over > 0;
         return print_validation(gpu) || differs ? 1 : 0;
+    }
+
+    std::string culling_of(const Renderer& renderer) const {
+        if (!frame.culling) return "off";
+        const Occlusion occlusion = renderer.occlusion();
+        return occlusion == Occlusion::automatic ? "none" : std::string(name_of(occlusion));
     }
 
     // What makes a picture empty, or another one than expected, is said before it is made.
@@ -301,11 +319,25 @@ struct Render : Command {
             {"Software", "isorast"},
             {"Source", std::filesystem::path(volume.name).filename().string()},
             {"Comment", fmt::format("isovalue {:.9g}", fmt::join(frame.isovalues, ", "))}};
+        if (view.stereo.mode == StereoMode::layers) return write_layers(image, text);
         if (output != "-") return write_png(output, image, text);
         const std::vector<uint8_t> bytes = encode_png(image, text);
         if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
             std::fflush(stdout)) {
             throw Error("standard output: the picture cannot be written");
+        }
+    }
+
+    // picture.png: picture.left.png and picture.right.png.
+    void write_layers(const Image& image,
+                      const std::vector<std::pair<std::string, std::string>>& text) const {
+        const size_t half = image.rgba.size() / 2;
+        for (const auto& [name, begin] :
+             {std::pair{".left.png", size_t{0}}, {".right.png", half}}) {
+            const auto first = image.rgba.begin() + ptrdiff_t(begin);
+            const Image eye{.size = {image.size.width, image.size.height / 2},
+                            .rgba = {first, first + ptrdiff_t(half)}};
+            write_png(std::filesystem::path(output).replace_extension(name).string(), eye, text);
         }
     }
 

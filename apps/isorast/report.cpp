@@ -52,8 +52,8 @@ std::string stats_table(const RenderReport& report) {
         text += fmt::format("  {:<24}{:>10.3f} ms\n", pass.name, pass.milliseconds);
     }
     text += fmt::format("  {:<24}{:>10.3f} ms\n", "total", stats.total_ms);
-    text += fmt::format("blocks {}  active {}  drawn {}\n", stats.blocks, stats.blocks_active,
-                        stats.blocks_drawn);
+    text += fmt::format("blocks {}  active {}  drawn {}  (culling: {})\n", stats.blocks,
+                        stats.blocks_active, stats.blocks_drawn, report.culling);
     const double share = stats.volume_bytes == 0 ? 0
                                                  : 100.0 * static_cast<double>(stats.extra_bytes) /
                                                        static_cast<double>(stats.volume_bytes);
@@ -77,6 +77,7 @@ Json json_of(const RenderReport& report) {
               {"value_range", report.value_range},
               {"technique", report.technique},
               {"rasterizer", report.rasterizer},
+              {"culling", report.culling},
               {"device", report.device},
               {"driver", report.driver},
               {"seconds", report.seconds},

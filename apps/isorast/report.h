@@ -9,7 +9,7 @@ struct RenderReport {
     std::string output;
     Size size;
     std::vector<double> isovalues;
-    std::string technique, rasterizer, device, driver;
+    std::string technique, rasterizer, culling, device, driver;
     std::array<double, 2> value_range{};
     double seconds = 0;  // from the start of the command to the written file
     FrameStats stats;    // the median of `frames`

@@ -15,17 +15,24 @@ struct HostDevice {
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;  // with compute; with graphics too for the hardware rasterizer
     uint32_t queue_family = 0;
+    // Optional: a queue that can copy and that nobody else uses. Time steps that are not on the GPU
+    // yet are then uploaded on it, from another thread, while frames are drawn.
+    VkQueue upload_queue = VK_NULL_HANDLE;
+    uint32_t upload_queue_family = 0;
     bool storage_16bit = false;  // storageBuffer16BitAccess: required
     bool nonuniform_textures =
         false;  // shaderSampledImageArrayNonUniformIndexing: volumes of several bricks
     bool mesh_shaders = false;       // VK_EXT_mesh_shader with taskShader and meshShader
     bool dynamic_rendering = false;  // Vulkan 1.3 dynamicRendering
     bool storage_without_format =
-        false;  // shaderStorageImageWriteWithoutFormat and ...ExtendedFormats
+        false;                     // shaderStorageImageWriteWithoutFormat and ...ExtendedFormats
+    bool fragment_stores = false;  // fragmentStoresAndAtomics: occlusion tests by raster proxies
+    bool representative_test = false;  // VK_NV_representative_fragment_test
 };
 
 // Where a recorded frame's picture will be once the command buffer has run. Images stay in GENERAL
-// layout, belong to the Renderer, and are overwritten by the next recorded frame.
+// layout, belong to the Renderer, and are overwritten by the next recorded frame. In stereo they
+// have two layers, the left eye's first, and the views are arrays.
 struct RecordedFrame {
     VkImage color = VK_NULL_HANDLE;  // R8G8B8A8_UNORM, sRGB-encoded, straight alpha
     VkImageView color_view = VK_NULL_HANDLE;
@@ -40,6 +47,9 @@ struct RecordedFrame {
 // have finished on the GPU. A frame of another size, or the first with several isovalues or with
 // want_depth, makes new images: then all frames recorded before must have finished. At most one
 // frame of a Renderer is recorded at a time. Barriers before and after the frame are included.
+// Frames must be submitted in the order in which they were recorded. A time step that is not on the
+// GPU is waited for here; without HostDevice::upload_queue it is also read here, and uploaded by
+// submissions to HostDevice::queue.
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,
                      uint32_t slot);
 

@@ -7,4 +7,5 @@
 #include <isorast/image.h>
 #include <isorast/load.h>
 #include <isorast/renderer.h>
+#include <isorast/series.h>
 #include <isorast/volume.h>

@@ -1,35 +1,67 @@
 // SPDX-License-Identifier: MIT
-// Renderer: one volume on one device; each render() is one frame, straight from the voxels.
+// Renderer: one volume, or one that changes in time, on one device; each render() is one frame,
+// straight from the voxels.
 #pragma once
 #include <isorast/camera.h>
 #include <isorast/gpu.h>
 #include <isorast/image.h>
-#include <isorast/volume.h>
+#include <isorast/series.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace isorast {
 
 enum class Shading : uint8_t { gooch, phong, normals, depth, blocks, forward };
+// How occlusion culling finds hidden blocks: by raster proxies, as in the paper (needs the hardware
+// rasterizer), or by a depth pyramid (HiZ). The picture is the same.
+enum class Occlusion : uint8_t { automatic, raster, hiz };
+
+// Two eyes: both pictures beside each other, twice as wide; red-cyan in one picture; or, for those
+// who show them otherwise, the left eye's picture above the right eye's, twice as high.
+enum class StereoMode : uint8_t { off, side_by_side, anaglyph, layers };
 
 std::string_view name_of(Rasterizer rasterizer);
 std::string_view name_of(Shading shading);
+std::string_view name_of(Occlusion occlusion);
+std::string_view name_of(StereoMode mode);
 std::optional<Rasterizer> parse_rasterizer(std::string_view word);
 std::optional<Shading> parse_shading(std::string_view word);
+std::optional<Occlusion> parse_occlusion(std::string_view word);
+std::optional<StereoMode> parse_stereo(std::string_view word);
 
 struct RendererOptions {
     // One of techniques(); "auto": direct, or raymarch where direct cannot be had.
     std::string technique = "auto";
     Rasterizer rasterizer = Rasterizer::automatic;
+    Occlusion occlusion = Occlusion::automatic;
     bool exact = false;           // raymarch: solve each cell's cubic instead of stepping
     uint32_t max_brick_side = 0;  // largest side of a 3D image in voxels; 0: what the device allows
     uint32_t frames_in_flight = 2;
+    // Most bytes on the device for the time steps of a series: those that fit stay there. At least
+    // two stay. 0: half of the device's memory, a quarter on CPU drivers.
+    uint64_t step_bytes = 0;
 };
 
 struct Color {
     float r = 0, g = 0, b = 0, a = 1;  // sRGB, 0 to 1
+};
+
+// Keeps the points p of the surface with dot(normal, p) >= offset, world coordinates.
+struct ClipPlane {
+    std::array<double, 3> normal{1, 0, 0};
+    double offset = 0;
+};
+
+// Two eyes that look the same way, to the left and right of the camera's position: their frusta are
+// sheared so that what lies at the distance of convergence shows no parallax.
+struct Stereo {
+    StereoMode mode = StereoMode::off;
+    // World units. By default the eyes converge at the camera's target, and are a 30th of the
+    // distance of convergence apart: the usual limit for comfort.
+    std::optional<double> separation{}, convergence{};
 };
 
 struct Frame {
@@ -37,11 +69,16 @@ struct Frame {
     std::vector<Color>
         colors{};  // one for each isovalue; the default palette fills up what is missing
     Camera camera{};
-    Size size{};
+    Size size{};                     // of one eye's picture
+    std::vector<ClipPlane> clips{};  // at most MAX_CLIPS (8)
+    Stereo stereo{};
+    uint32_t time_step = 0;  // of a series
     Shading shading = Shading::gooch;
     Color background{1, 1, 1, 1};  // alpha 0: transparent
     bool culling = true;  // frustum culling (and occlusion culling where the technique has it)
     bool want_depth = false;
+
+    uint32_t eyes() const { return stereo.mode == StereoMode::off ? 1 : 2; }
 };
 
 struct PassTime {
@@ -53,8 +90,10 @@ struct FrameStats {
     std::vector<PassTime> passes;  // in the order of the frame; GPU time
     double total_ms = 0;           // from the first to the last timestamp
     uint64_t blocks = 0, blocks_active = 0, blocks_drawn = 0;
-    uint64_t volume_bytes = 0;  // voxels on the GPU, brick aprons included
-    uint64_t extra_bytes = 0;   // everything else on the GPU but the frame's targets
+    double wait_ms = 0;           // until the time step was read and uploaded; 0: it was there
+    uint32_t resident_steps = 1;  // time steps on the GPU
+    uint64_t volume_bytes = 0;    // voxels on the GPU, brick aprons included, of all these steps
+    uint64_t extra_bytes = 0;     // everything else on the GPU but the frame's targets
     uint64_t target_bytes = 0;
     uint32_t bricks = 0;
 };
@@ -62,7 +101,7 @@ struct FrameStats {
 // What does not fit the device, before anything is allocated: empty when all fits, else one line
 // that says what and by how much.
 std::string what_does_not_fit(const Gpu& gpu, const Volume& volume,
-                              const RendererOptions& options = {});
+                              const RendererOptions& options = {}, uint32_t time_steps = 1);
 
 std::vector<std::string> techniques();
 
@@ -79,21 +118,29 @@ public:
     // Uploads the volume (or samples its formula) and builds the min-max blocks. The volume may be
     // freed afterwards. Throws Error when the device or the technique cannot do it.
     Renderer(Gpu& gpu, const Volume& volume, const RendererOptions& options = {});
+    // The same for the first step. The others are read and uploaded when a frame shows them, or
+    // before, by a thread of the Renderer: then the step that will probably be next, as far again
+    // as the last one was, around the end. series.load must work as long as the Renderer lives.
+    Renderer(Gpu& gpu, const Series& series, const RendererOptions& options = {});
     Renderer(Renderer&&) noexcept;
     ~Renderer();
 
+    // Waits for the frame's time step if it is not there; throws its Error if it cannot be read.
     Image render(const Frame& frame);
 
     // The frame's GPU times and counts, of the last render().
     const FrameStats& stats() const;
-    // The range of the finite voxels, in data units, as found on the GPU.
+    // The range of the finite voxels, in data units, of the time step that was shown last, at first
+    // step 0; as found on the GPU.
     std::array<double, 2> value_range() const;
     // Corners of the outermost blocks that the surfaces at these isovalues (data units) cross;
     // empty when there is no surface. For cameras that fit the object and not the empty space
-    // around it: OrbitOptions::shown.
+    // around it: OrbitOptions::shown. Of the time step that was shown last, too.
     VoxelPoints surface_hull(const std::vector<double>& isovalues) const;
     std::string technique() const;  // what "auto" became
     Rasterizer rasterizer() const;  // what `automatic` became
+    // What `automatic` became; still automatic if the technique has no occlusion culling.
+    Occlusion occlusion() const;
 
     class State;
     State& state() const { return *state_; }

@@ -68,6 +68,7 @@ struct Field {
     Kind kind = Kind::sphere;
     uint32_t octaves = 6;  // noise only
     uint32_t seed = 1;     // noise only
+    double time = 0;       // 0 to 1: how much of the one period has gone by
 };
 
 struct Volume {
@@ -91,12 +92,14 @@ struct Volume {
 };
 
 // True when `name` is spelled like a formula: "sphere:64", "noise:128:octaves=6:seed=1:type=u8",
-// "gyroid:64x64x32:spacing=1,1,2". Names: sphere torus gyroid marschner-lobb noise coral.
+// "gyroid:64x64x32:spacing=1,1,2", "coral:64:steps=30". Names: sphere torus gyroid marschner-lobb
+// noise coral.
 bool is_procedural(std::string_view name);
 // A volume of that formula. World positions are the formula's own coordinates, [-1, 1] along the
-// longest side, unless spacing is given. Throws Error that names the bad part and lists what is
-// allowed.
-Volume make_procedural(std::string_view name);
+// longest side, unless spacing is given. With "steps=" the formula varies smoothly in time: step
+// `time_step` shows time_step / steps of one period, so that the last step leads back to the first.
+// Throws Error that names the bad part and lists what is allowed.
+Volume make_procedural(std::string_view name, uint32_t time_step = 0);
 // Fill `bytes` from `field` on the CPU, if not filled yet.
 void sample(Volume& volume);
 

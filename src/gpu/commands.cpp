@@ -108,7 +108,7 @@ void Commands::discard_to_general(const Texture& texture) {
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = texture.handle(),
-        .subresourceRange = {texture.aspect(), 0, 1, 0, 1}};
+        .subresourceRange = {texture.aspect(), 0, 1, 0, texture.layers()}};
     vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1,
                          &barrier);
@@ -129,20 +129,12 @@ void Commands::fill(const Buffer& buffer, uint32_t value) {
 }
 
 void Commands::clear(const Texture& texture, const VkClearColorValue& color) {
-    const VkImageSubresourceRange whole{texture.aspect(), 0, 1, 0, 1};
+    const VkImageSubresourceRange whole{texture.aspect(), 0, 1, 0, texture.layers()};
     vkCmdClearColorImage(commands_, texture.handle(), VK_IMAGE_LAYOUT_GENERAL, &color, 1, &whole);
 }
 
-void Commands::copy_to_texture(const Buffer& from, const Texture& to, uint32_t z, uint32_t slices) {
-    const VkBufferImageCopy region{.imageSubresource = {to.aspect(), 0, 0, 1},
-                                   .imageOffset = {0, 0, int32_t(z)},
-                                   .imageExtent = {to.extent().width, to.extent().height, slices}};
-    vkCmdCopyBufferToImage(commands_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_GENERAL, 1,
-                           &region);
-}
-
 void Commands::copy_to_buffer(const Texture& from, const Buffer& to) {
-    const VkBufferImageCopy region{.imageSubresource = {from.aspect(), 0, 0, 1},
+    const VkBufferImageCopy region{.imageSubresource = {from.aspect(), 0, 0, from.layers()},
                                    .imageExtent = from.extent()};
     vkCmdCopyImageToBuffer(commands_, from.handle(), VK_IMAGE_LAYOUT_GENERAL, to.handle(), 1,
                            &region);
@@ -206,11 +198,12 @@ void Commands::draw_mesh_tasks_indirect(const Buffer& arguments, uint64_t offset
 }
 
 void Commands::begin_rendering(const std::vector<const Texture*>& colors, const Texture* depth,
-                               bool clear, const VkClearColorValue& color) {
+                               bool clear, const VkClearColorValue& color,
+                               std::optional<uint32_t> layer) {
     const auto attachment = [&](const Texture& texture, const VkClearValue& value) {
         return VkRenderingAttachmentInfo{
             .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-            .imageView = texture.view(),
+            .imageView = layer ? texture.layer_view(*layer) : texture.view(),
             .imageLayout = VK_IMAGE_LAYOUT_GENERAL,
             .loadOp = clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD,
             .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
@@ -223,7 +216,7 @@ void Commands::begin_rendering(const std::vector<const Texture*>& colors, const 
     const auto depth_info = attachment(*depth, {.depthStencil = {0, 0}});
     const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                .renderArea = {{0, 0}, {size.width, size.height}},
-                               .layerCount = 1,
+                               .layerCount = layer ? 1 : depth->layers(),
                                .colorAttachmentCount = uint32_t(color_infos.size()),
                                .pColorAttachments = color_infos.data(),
                                .pDepthAttachment = &depth_info};
@@ -261,6 +254,7 @@ Submission::~Submission() {
 Commands Submission::begin() {
     wait();
     slot_.reset();
+    VK_CHECK(vkResetCommandBuffer(commands_, 0));  // an error may have ended its recording half way
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     VK_CHECK(vkBeginCommandBuffer(commands_, &info));
@@ -279,7 +273,7 @@ void Submission::submit() {
     const VkSubmitInfo info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                             .commandBufferCount = 1,
                             .pCommandBuffers = &commands_};
-    VK_CHECK(vkQueueSubmit(device_.queue(), 1, &info, fence_));
+    device_.submit(device_.queue(), info, fence_);
     pending_ = true;
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,8 +79,7 @@ public:
               uint64_t bytes);
     void fill(const Buffer& buffer, uint32_t value);
     void clear(const Texture& texture, const VkClearColorValue& color);  // not a depth image
-    // Whole slices z .. z + slices - 1 of a 3D image, tightly packed in the buffer.
-    void copy_to_texture(const Buffer& from, const Texture& to, uint32_t z, uint32_t slices);
+    // All layers, one after the other, tightly packed.
     void copy_to_buffer(const Texture& from, const Buffer& to);
 
     void set_scene(VkDescriptorSet scene) { scene_ = scene; }
@@ -96,9 +96,11 @@ public:
     void draw(uint32_t vertices);
     void draw_mesh_tasks_indirect(const Buffer& arguments, uint64_t offset);
 
-    // Rendering into attachments, cleared first (depth to 0, far) or kept.
+    // Rendering into attachments, cleared first (depth to 0, far) or kept: into one layer, or into
+    // all, where primitives choose theirs.
     void begin_rendering(const std::vector<const Texture*>& colors, const Texture* depth,
-                         bool clear, const VkClearColorValue& color = {});
+                         bool clear, const VkClearColorValue& color = {},
+                         std::optional<uint32_t> layer = {});
     void end_rendering();
 
     VkCommandBuffer handle() const { return commands_; }

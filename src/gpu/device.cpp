@@ -125,10 +125,9 @@ Device::Device(const HostDevice& host)
       owned_(false) {
     adopt_physical();
     queue_family_ = host.queue_family;
-    uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(physical_, &count, families.data());
+    upload_queue_ = host.upload_queue ? host.upload_queue : queue_;
+    upload_family_ = host.upload_queue ? host.upload_queue_family : queue_family_;
+    const auto families = queue_families(physical_);
     has_graphics_ = families.at(queue_family_).queueFlags & VK_QUEUE_GRAPHICS_BIT;
     timestamp_bits_ = families.at(queue_family_).timestampValidBits;
     if (!host.storage_16bit)
@@ -137,7 +136,9 @@ Device::Device(const HostDevice& host)
                  .nonuniform_textures = host.nonuniform_textures,
                  .mesh_shaders = host.mesh_shaders,
                  .dynamic_rendering = host.dynamic_rendering,
-                 .storage_without_format = host.storage_without_format};
+                 .storage_without_format = host.storage_without_format,
+                 .fragment_stores = host.fragment_stores,
+                 .representative_test = host.representative_test};
     load_functions();
 }
 
@@ -181,14 +182,20 @@ void Device::adopt_physical() {
 void Device::create_device() {
     const QueueChoice queue = choose_queue(physical_).value();
     queue_family_ = queue.family;
+    upload_family_ = choose_copy_family(physical_).value_or(queue_family_);
     timestamp_bits_ = queue.timestamp_bits;
     has_graphics_ = queue.graphics;
     features_ = supported_features(physical_);
     features_.mesh_shaders = features_.mesh_shaders && info_.why_not_hardware.empty();
+    features_.representative_test = features_.representative_test && features_.mesh_shaders;
 
     // Chain only the structures that this device's version and extensions know.
+    VkPhysicalDeviceRepresentativeFragmentTestFeaturesNV representative{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_REPRESENTATIVE_FRAGMENT_TEST_FEATURES_NV,
+        .representativeFragmentTest = VK_TRUE};
     VkPhysicalDeviceMeshShaderFeaturesEXT mesh{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT,
+        .pNext = features_.representative_test ? &representative : nullptr,
         .taskShader = VK_TRUE,
         .meshShader = VK_TRUE};
     VkPhysicalDeviceDynamicRenderingFeatures rendering{
@@ -204,26 +211,32 @@ void Device::create_device() {
         .pNext = properties_.apiVersion >= VK_API_VERSION_1_2 ? &indexing : nullptr,
         .storageBuffer16BitAccess = VK_TRUE};
     const VkPhysicalDeviceFeatures core{
+        .fragmentStoresAndAtomics = features_.fragment_stores,
         .shaderStorageImageExtendedFormats = features_.storage_without_format,
         .shaderStorageImageWriteWithoutFormat = features_.storage_without_format};
     const float priority = 1;
-    const VkDeviceQueueCreateInfo queue_info{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                             .queueFamilyIndex = queue_family_,
-                                             .queueCount = 1,
-                                             .pQueuePriorities = &priority};
+    std::vector<VkDeviceQueueCreateInfo> queues(upload_family_ == queue_family_ ? 1 : 2);
+    for (size_t i = 0; i < queues.size(); ++i)
+        queues[i] = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                     .queueFamilyIndex = i == 0 ? queue_family_ : upload_family_,
+                     .queueCount = 1,
+                     .pQueuePriorities = &priority};
     std::vector<const char*> extensions;
     if (features_.mesh_shaders) extensions.push_back(VK_EXT_MESH_SHADER_EXTENSION_NAME);
+    if (features_.representative_test)
+        extensions.push_back(VK_NV_REPRESENTATIVE_FRAGMENT_TEST_EXTENSION_NAME);
     if (has_extension(physical_, "VK_KHR_portability_subset"))
         extensions.push_back("VK_KHR_portability_subset");
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &storage,
-                                  .queueCreateInfoCount = 1,
-                                  .pQueueCreateInfos = &queue_info,
+                                  .queueCreateInfoCount = uint32_t(queues.size()),
+                                  .pQueueCreateInfos = queues.data(),
                                   .enabledExtensionCount = uint32_t(extensions.size()),
                                   .ppEnabledExtensionNames = extensions.data(),
                                   .pEnabledFeatures = &core};
     VK_CHECK(vkCreateDevice(physical_, &info, nullptr, &device_));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    vkGetDeviceQueue(device_, upload_family_, 0, &upload_queue_);
 }
 
 void Device::load_functions() {
@@ -241,6 +254,11 @@ void Device::load_functions() {
         load(functions_.begin_label, "vkCmdBeginDebugUtilsLabelEXT");
         load(functions_.end_label, "vkCmdEndDebugUtilsLabelEXT");
     }
+}
+
+void Device::submit(VkQueue queue, const VkSubmitInfo& info, VkFence fence) const {
+    const std::lock_guard lock(submit_mutex_);
+    VK_CHECK(vkQueueSubmit(queue, 1, &info, fence));
 }
 
 VkDeviceMemory Device::allocate(const VkMemoryRequirements& requirements,

@@ -16,6 +16,8 @@ struct Features {
     bool mesh_shaders = false;
     bool dynamic_rendering = false;
     bool storage_without_format = false;  // formulas sampled on the GPU
+    bool fragment_stores = false;         // occlusion tests by raster proxies
+    bool representative_test = false;     // the same, faster: VK_NV_representative_fragment_test
 };
 
 // Extension functions, loaded by hand.
@@ -39,6 +41,13 @@ public:
     VkPhysicalDevice physical() const { return physical_; }
     VkQueue queue() const { return queue_; }
     uint32_t queue_family() const { return queue_family_; }
+    // Where uploads go: a copy engine of its own where the device has one, else queue().
+    VkQueue upload_queue() const { return upload_queue_; }
+    uint32_t upload_family() const { return upload_family_; }
+    // False where only the host may say when its queue is used.
+    bool can_upload_in_background() const { return owned_ || upload_queue_ != queue_; }
+    // To queue() or upload_queue(), from any thread.
+    void submit(VkQueue queue, const VkSubmitInfo& info, VkFence fence) const;
     bool has_graphics() const { return has_graphics_; }
     const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
     const Features& features() const { return features_; }
@@ -65,8 +74,9 @@ private:
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
     VkDevice device_ = VK_NULL_HANDLE;
-    VkQueue queue_ = VK_NULL_HANDLE;
-    uint32_t queue_family_ = 0, timestamp_bits_ = 0;
+    VkQueue queue_ = VK_NULL_HANDLE, upload_queue_ = VK_NULL_HANDLE;
+    uint32_t queue_family_ = 0, upload_family_ = 0, timestamp_bits_ = 0;
+    mutable std::mutex submit_mutex_;
     bool owned_ = true, has_graphics_ = false, debug_utils_ = false;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};

@@ -136,7 +136,7 @@ Pipeline Pipeline::graphics(const Device& device, const PipelineInfo& info,
     const VkPipelineDepthStencilStateCreateInfo depth{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
         .depthTestEnable = VK_TRUE,
-        .depthWriteEnable = VK_TRUE,
+        .depthWriteEnable = attachments.writes_depth,
         .depthCompareOp = VK_COMPARE_OP_GREATER};
     const std::vector<VkPipelineColorBlendAttachmentState> blends(
         attachments.colors.size(), VkPipelineColorBlendAttachmentState{.colorWriteMask = 0xf});
@@ -149,8 +149,12 @@ Pipeline Pipeline::graphics(const Device& device, const PipelineInfo& info,
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
         .dynamicStateCount = uint32_t(dynamics.size()),
         .pDynamicStates = dynamics.data()};
+    const VkPipelineRepresentativeFragmentTestStateCreateInfoNV representative{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_REPRESENTATIVE_FRAGMENT_TEST_STATE_CREATE_INFO_NV,
+        .representativeFragmentTestEnable = VK_TRUE};
     const VkPipelineRenderingCreateInfo rendering{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+        .pNext = attachments.representative ? &representative : nullptr,
         .colorAttachmentCount = uint32_t(attachments.colors.size()),
         .pColorAttachmentFormats = attachments.colors.data(),
         .depthAttachmentFormat = attachments.depth};

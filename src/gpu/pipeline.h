@@ -35,6 +35,8 @@ struct PipelineInfo {
 struct Attachments {
     std::vector<VkFormat> colors;
     VkFormat depth = VK_FORMAT_UNDEFINED;
+    bool writes_depth = true;
+    bool representative = false;  // one fragment that passes stands for its primitive
 };
 
 class Pipeline {

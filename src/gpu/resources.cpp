@@ -2,6 +2,7 @@
 // Buffers, images and samplers.
 #include "gpu/resources.h"
 
+#include <array>
 #include <utility>
 
 #include "gpu/device.h"
@@ -47,6 +48,8 @@ void Buffer::swap(Buffer& other) noexcept {
 namespace {
 
 VkImage create_image(const Device& device, const ImageInfo& info) {
+    const std::array families{device.queue_family(), device.upload_family()};
+    const bool shared = info.uploaded && families[0] != families[1];
     const VkImageCreateInfo create{
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
         .flags = info.as_bits ? VkImageCreateFlags{VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT} : 0u,
@@ -54,10 +57,13 @@ VkImage create_image(const Device& device, const ImageInfo& info) {
         .format = info.format,
         .extent = info.extent,
         .mipLevels = 1,
-        .arrayLayers = 1,
+        .arrayLayers = info.layers,
         .samples = VK_SAMPLE_COUNT_1_BIT,
         .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = info.usage};
+        .usage = info.usage,
+        .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
+        .queueFamilyIndexCount = shared ? uint32_t(families.size()) : 0,
+        .pQueueFamilyIndices = shared ? families.data() : nullptr};
     VkImage image = VK_NULL_HANDLE;
     VK_CHECK(vkCreateImage(device.handle(), &create, nullptr, &image));
     return image;
@@ -73,17 +79,20 @@ Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
     bytes_ = requirements.size;
     memory_ = device.allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, what);
     VK_CHECK(vkBindImageMemory(device.handle(), image_, memory_, 0));
-    view_ = make_view(info.format);
-    if (info.as_bits) bits_view_ = make_view(VK_FORMAT_R32_UINT);
+    const VkImageViewType type = info.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    view_ = make_view(type, info.format, 0, info.layers);
+    if (info.as_bits) bits_view_ = make_view(type, VK_FORMAT_R32_UINT, 0, info.layers);
+    for (uint32_t layer = 0; !info.is_3d && layer < info.layers; ++layer)
+        layer_views_.at(layer) = make_view(VK_IMAGE_VIEW_TYPE_2D, info.format, layer, 1);
 }
 
-VkImageView Texture::make_view(VkFormat format) const {
-    const VkImageViewCreateInfo info{
-        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-        .image = image_,
-        .viewType = info_.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
-        .format = format,
-        .subresourceRange = {aspect(), 0, 1, 0, 1}};
+VkImageView Texture::make_view(VkImageViewType type, VkFormat format, uint32_t layer,
+                               uint32_t layers) const {
+    const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                     .image = image_,
+                                     .viewType = type,
+                                     .format = format,
+                                     .subresourceRange = {aspect(), 0, 1, layer, layers}};
     VkImageView view = VK_NULL_HANDLE;
     VK_CHECK(vkCreateImageView(device_->handle(), &info, nullptr, &view));
     return view;
@@ -91,6 +100,8 @@ VkImageView Texture::make_view(VkFormat format) const {
 
 Texture::~Texture() {
     if (!device_) return;
+    for (VkImageView view : layer_views_)
+        vkDestroyImageView(device_->handle(), view, nullptr);
     vkDestroyImageView(device_->handle(), bits_view_, nullptr);
     vkDestroyImageView(device_->handle(), view_, nullptr);
     vkDestroyImage(device_->handle(), image_, nullptr);
@@ -115,6 +126,7 @@ void Texture::swap(Texture& other) noexcept {
     std::swap(image_, other.image_);
     std::swap(view_, other.view_);
     std::swap(bits_view_, other.bits_view_);
+    std::swap(layer_views_, other.layer_views_);
     std::swap(memory_, other.memory_);
     std::swap(info_, other.info_);
     std::swap(bytes_, other.bytes_);

@@ -4,6 +4,7 @@
 #pragma once
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -51,8 +52,9 @@ struct ImageInfo {
     VkExtent3D extent{1, 1, 1};
     VkImageUsageFlags usage = 0;
     bool is_3d = false;
-    // Its texels can be seen as R32_UINT too, for atomics: formats of 32 bits.
-    bool as_bits = false;
+    uint32_t layers = 1;    // of a 2D image, which is an array to all shaders; at most 2
+    bool uploaded = false;  // written on the upload queue too
+    bool as_bits = false;   // 32-bit texels that can be seen as R32_UINT too, for atomics
 };
 
 class Texture {
@@ -70,8 +72,10 @@ public:
     static uint64_t bytes_needed(const Device& device, const ImageInfo& info);
 
     VkImage handle() const { return image_; }
-    VkImageView view() const { return view_; }
-    VkImageView bits_view() const { return bits_view_; }  // ImageInfo::as_bits
+    VkImageView view() const { return view_; }            // of a volume, or an array of all layers
+    VkImageView bits_view() const { return bits_view_; }  // the same; ImageInfo::as_bits
+    VkImageView layer_view(uint32_t layer) const { return layer_views_.at(layer); }  // a 2D image
+    uint32_t layers() const { return info_.layers; }
     VkFormat format() const { return info_.format; }
     VkExtent3D extent() const { return info_.extent; }
     VkImageAspectFlags aspect() const;
@@ -79,11 +83,13 @@ public:
     explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
 private:
-    VkImageView make_view(VkFormat format) const;
+    VkImageView make_view(VkImageViewType type, VkFormat format, uint32_t layer,
+                          uint32_t layers) const;
     void swap(Texture& other) noexcept;
     const Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
     VkImageView view_ = VK_NULL_HANDLE, bits_view_ = VK_NULL_HANDLE;
+    std::array<VkImageView, 2> layer_views_{};
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
     ImageInfo info_;
     uint64_t bytes_ = 0;

@@ -63,19 +63,36 @@ std::string list_of(const std::vector<DeviceInfo>& infos) {
 
 }  // namespace
 
-std::optional<QueueChoice> choose_queue(VkPhysicalDevice physical) {
+std::vector<VkQueueFamilyProperties> queue_families(VkPhysicalDevice physical) {
     uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+    return families;
+}
+
+std::optional<QueueChoice> choose_queue(VkPhysicalDevice physical) {
+    const auto families = queue_families(physical);
     std::optional<QueueChoice> choice;
-    for (uint32_t i = 0; i < count; ++i) {
+    for (uint32_t i = 0; i < families.size(); ++i) {
         const bool graphics = families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT;
         if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
         if (!choice || (graphics && !choice->graphics))
             choice = QueueChoice{i, families[i].timestampValidBits, graphics};
     }
     return choice;
+}
+
+std::optional<uint32_t> choose_copy_family(VkPhysicalDevice physical) {
+    const auto families = queue_families(physical);
+    for (uint32_t i = 0; i < families.size(); ++i) {
+        const VkQueueFlags flags = families[i].queueFlags;
+        const auto [x, y, z] = families[i].minImageTransferGranularity;
+        if ((flags & VK_QUEUE_TRANSFER_BIT) && x == 1 && y == 1 && z == 1 &&
+            !(flags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)))
+            return i;
+    }
+    return std::nullopt;
 }
 
 bool has_extension(VkPhysicalDevice physical, const char* name) {
@@ -110,7 +127,11 @@ Features supported_features(VkPhysicalDevice physical) {
             .mesh_shaders = mesh.taskShader && mesh.meshShader,
             .dynamic_rendering = rendering.dynamicRendering == VK_TRUE,
             .storage_without_format = all.features.shaderStorageImageWriteWithoutFormat &&
-                                      all.features.shaderStorageImageExtendedFormats};
+                                      all.features.shaderStorageImageExtendedFormats,
+            .fragment_stores = all.features.fragmentStoresAndAtomics == VK_TRUE,
+            // The extension has this one feature.
+            .representative_test =
+                has_extension(physical, VK_NV_REPRESENTATIVE_FRAGMENT_TEST_EXTENSION_NAME)};
 }
 
 DeviceInfo describe(VkPhysicalDevice physical) {

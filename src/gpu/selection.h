@@ -2,10 +2,13 @@
 // What physical devices can do, and which one to take.
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "gpu/device.h"
 
 namespace isorast::gpu {
+
+std::vector<VkQueueFamilyProperties> queue_families(VkPhysicalDevice physical);
 
 // The queue family with graphics and compute, or compute alone; nothing without compute.
 struct QueueChoice {
@@ -13,6 +16,9 @@ struct QueueChoice {
     bool graphics = false;
 };
 std::optional<QueueChoice> choose_queue(VkPhysicalDevice physical);
+// A family for copies alone, a DMA engine beside the cores, that can copy any slices of a 3D image;
+// nothing where there is none.
+std::optional<uint32_t> choose_copy_family(VkPhysicalDevice physical);
 
 bool has_extension(VkPhysicalDevice physical, const char* name);
 Features supported_features(VkPhysicalDevice physical);

@@ -14,6 +14,7 @@
 #include "minmax_level_comp.h"
 #include "sample_field_comp.h"
 #include "volume/field.h"
+#include "volume/voxels.h"
 
 namespace isorast {
 
@@ -21,7 +22,10 @@ namespace {
 
 using shared::uvec4;
 
-constexpr uint64_t STAGING_BYTES = 64u << 20;
+struct SamplePush {
+    field::FieldSampling sampling;
+    glm::uvec3 origin;
+};
 
 glm::uvec3 divide_up(glm::uvec3 a, glm::uvec3 b) {
     return (a + b - 1u) / b;
@@ -55,15 +59,6 @@ uint64_t minmax_bytes(const shared::GridInfo& info, const Stored& stored) {
            ~uint64_t{3};
 }
 
-gpu::ImageInfo brick_image(const BrickPlan& plan, uint32_t brick, VkFormat format, bool written) {
-    const glm::uvec3 size = plan.extent(brick);
-    return {.format = format,
-            .extent = {size.x, size.y, size.z},
-            .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                     (written ? VkImageUsageFlags{VK_IMAGE_USAGE_STORAGE_BIT} : 0u),
-            .is_3d = true};
-}
-
 bool can_sample_on_gpu(const gpu::Device& device, const Stored& stored) {
     VkFormatProperties properties;
     vkGetPhysicalDeviceFormatProperties(device.physical(), stored.format, &properties);
@@ -80,6 +75,23 @@ BrickPlan plan_for(const gpu::Device& device, const Volume& volume, const Stored
     return plan_bricks(voxels, stored.bytes(), side, device.max_allocation() / 8 * 7);
 }
 
+void check_bricks(const gpu::Device& device, const Volume& volume, const BrickPlan& plan,
+                  uint32_t max_brick_side) {
+    if (plan.count() > shared::MAX_BRICKS)
+        throw Error(
+            fmt::format("{}: needs {} bricks of at most {} voxels a side, at most {} fit; use a "
+                        "device with larger 3D images, or a smaller volume",
+                        volume.name, plan.count(),
+                        max_brick_side ? max_brick_side : device.limits().maxImageDimension3D,
+                        shared::MAX_BRICKS));
+    if (!plan.one() && !device.features().nonuniform_textures)
+        throw Error(
+            fmt::format("{}: does not fit one 3D image of {}, which cannot index several "
+                        "(shaderSampledImageArrayNonUniformIndexing); use another device or a "
+                        "smaller volume",
+                        volume.name, device.info().name));
+}
+
 }  // namespace
 
 GridPlan plan_grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_side) {
@@ -89,76 +101,46 @@ GridPlan plan_grid(const gpu::Device& device, const Volume& volume, uint32_t max
                                   : bytes == 2 ? VK_FORMAT_R16_UNORM
                                                : VK_FORMAT_R32_SFLOAT,
                         .bits = uint32_t(8 * bytes)};
-    GridPlan plan{.bricks = plan_for(device, volume, stored, max_brick_side)};
+    const StepFormat format{.bricks = plan_for(device, volume, stored, max_brick_side),
+                            .stored = stored};
+    GridPlan plan{.bricks = format.bricks};
     plan.volume_bytes = volume.voxel_count() * stored.bytes();
     if (plan.bricks.count() <= shared::MAX_BRICKS) {
         plan.volume_bytes = 0;
         for (uint32_t i = 0; i < plan.bricks.count(); ++i)
-            plan.volume_bytes += gpu::Texture::bytes_needed(
-                device, brick_image(plan.bricks, i, stored.format, false));
+            plan.volume_bytes += gpu::Texture::bytes_needed(device, brick_image(format, i));
     }
     plan.minmax_bytes = minmax_bytes(make_info(plan.bricks), stored);
     return plan;
 }
 
-Grid::Grid(const gpu::Device& device, const Volume& volume, uint32_t max_brick_side)
-    : device_(device), stored_(stored_as(volume)), sampler_(device) {
-    plan_ = plan_for(device, volume, stored_, max_brick_side);
-    if (plan_.count() > shared::MAX_BRICKS)
-        throw Error(
-            fmt::format("{}: needs {} bricks of at most {} voxels a side, at most {} fit; use a "
-                        "device with larger 3D images, or a smaller volume",
-                        volume.name, plan_.count(),
-                        max_brick_side ? max_brick_side : device.limits().maxImageDimension3D,
-                        shared::MAX_BRICKS));
-    if (!plan_.one() && !device.features().nonuniform_textures)
-        throw Error(
-            fmt::format("{}: does not fit one 3D image of {}, which cannot index several "
-                        "(shaderSampledImageArrayNonUniformIndexing); use another device or a "
-                        "smaller volume",
-                        volume.name, device.info().name));
-    info_ = make_info(plan_);
-    make_scene_layout();
+Grid::Grid(const gpu::Device& device, const Series& series, uint32_t max_brick_side,
+           uint64_t step_bytes)
+    : device_(device), sampler_(device) {
+    const Volume first = series.load(0);
+    check(first);
+    header_ = header_of(first);
+    format_.stored = stored_as(first);
+    format_.bricks = plan_for(device, first, format_.stored, max_brick_side);
+    check_bricks(device, first, format_.bricks, max_brick_side);
+    info_ = make_info(format_.bricks);
+    format_.minmax_bytes = minmax_bytes(info_, format_.stored);
+    format_.sampled_on_gpu =
+        first.field && first.bytes.span().empty() && can_sample_on_gpu(device, format_.stored);
+    steps_ = std::make_unique<Steps>(device, series, first, format_, step_bytes);
+
     using Memory = gpu::Buffer::Memory;
-    minmax_ = gpu::Buffer(device, minmax_bytes(info_, stored_), Memory::device, "min-max blocks");
     info_buffer_ = gpu::Buffer(device, sizeof(info_), Memory::device, "the grid's description");
     frame_buffer_ =
         gpu::Buffer(device, sizeof(shared::FrameInfo), Memory::device, "the frame's description");
-    minmax_blocks_ = gpu::Pipeline::compute(device, pipeline_info("minmax blocks", {}, 0),
-                                            pick(minmax_blocks_comp, minmax_blocks_comp_bricked));
-    minmax_level_ =
-        gpu::Pipeline::compute(device, pipeline_info("minmax level", {}, 4), minmax_level_comp);
-    const bool on_gpu =
-        volume.field && volume.bytes.span().empty() && can_sample_on_gpu(device, stored_);
-    for (uint32_t i = 0; i < plan_.count(); ++i)
-        textures_.emplace_back(device, brick_image(plan_, i, stored_.format, on_gpu), "the volume");
-    if (on_gpu) {
-        sample_on_gpu(volume);
-    } else if (volume.bytes.span().empty()) {
-        Volume sampled{.name = volume.name,
-                       .dims = volume.dims,
-                       .type = volume.type,
-                       .field = volume.field,
-                       .affine = volume.affine,
-                       .slope = volume.slope,
-                       .intercept = volume.intercept};
-        sample(sampled);
-        upload(sampled);
-    } else {
-        upload(volume);
-    }
-    find_range();
+    make_scene_layout();
+    make_pipelines();
+    step_ = &steps_->first();
+    gpu::run_once(device_, [&](gpu::Commands& commands) { begin_frame(commands, {}); });
 }
 
 Grid::~Grid() {
     vkDestroyDescriptorSetLayout(device_.handle(), scene_layout_, nullptr);
-}
-
-uint64_t Grid::volume_bytes() const {
-    uint64_t bytes = 0;
-    for (const auto& texture : textures_)
-        bytes += texture.bytes();
-    return bytes;
 }
 
 bool Grid::can_filter() const {
@@ -166,20 +148,39 @@ bool Grid::can_filter() const {
 }
 
 uint64_t Grid::extra_bytes() const {
-    return minmax_.bytes() + info_buffer_.bytes() + frame_buffer_.bytes();
+    return steps_->minmax_bytes() + info_buffer_.bytes() + frame_buffer_.bytes();
 }
 
 std::array<double, 2> Grid::value_range() const {
-    const double a = stored_.value(double(info_.range.x)), b = stored_.value(double(info_.range.y));
-    if (info_.range.x > info_.range.y) return {std::nan(""), std::nan("")};
+    // The root of the pyramid holds the range, except that floats' least value may stand for voxels
+    // that are not finite: for these, reading the voxels found it.
+    StoredRange range = step_->range;
+    if (range.least > range.greatest) {
+        const auto [least, greatest] = read_level(info_.bricks.w - 1).front();
+        if (greatest == NOT_FINITE) return {std::nan(""), std::nan("")};
+        range = {least, greatest};
+    }
+    const double a = stored().value(double(range.least));
+    const double b = stored().value(double(range.greatest));
     return {std::min(a, b), std::max(a, b)};
 }
 
 gpu::PipelineInfo Grid::pipeline_info(const char* name, std::vector<gpu::Kind> bindings,
                                       uint32_t push_bytes, std::vector<uint32_t> more) const {
-    std::vector<uint32_t> constants{stored_.bits};
+    std::vector<uint32_t> constants{stored().bits};
     constants.insert(constants.end(), more.begin(), more.end());
     return {name, scene_layout_, std::move(bindings), push_bytes, std::move(constants)};
+}
+
+void Grid::make_pipelines() {
+    minmax_blocks_ = gpu::Pipeline::compute(device_, pipeline_info("minmax blocks", {}, 0),
+                                            pick(minmax_blocks_comp, minmax_blocks_comp_bricked));
+    minmax_level_ =
+        gpu::Pipeline::compute(device_, pipeline_info("minmax level", {}, 4), minmax_level_comp);
+    if (format_.sampled_on_gpu)
+        sample_field_ = gpu::Pipeline::compute(
+            device_, pipeline_info("sample field", {gpu::Kind::image}, sizeof(SamplePush)),
+            sample_field_comp);
 }
 
 void Grid::make_scene_layout() {
@@ -202,18 +203,35 @@ void Grid::make_scene_layout() {
     VK_CHECK(vkCreateDescriptorSetLayout(device_.handle(), &info, nullptr, &scene_layout_));
 }
 
-void Grid::begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) const {
+void Grid::show(uint32_t step, std::vector<uint32_t> in_flight) {
+    step_ = &steps_->show(step, std::move(in_flight));
+}
+
+void Grid::begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) {
+    // Voxels that are not finite count as the least finite value: only floats from the CPU have
+    // such.
+    const bool known = step_->range.least <= step_->range.greatest;
+    info_.range.x = known ? step_->range.least : NOT_FINITE;
+    commands.update(info_buffer_, 0, &info_, sizeof(info_));
     commands.update(frame_buffer_, 0, &frame, sizeof(frame));
     commands.barrier();
+    commands.set_scene(make_set(commands));
+    if (step_->built) return;
+    if (step_->sampling) sample_formula(commands);
+    build_minmax(commands);
+    step_->built = true;
+}
+
+VkDescriptorSet Grid::make_set(gpu::Commands& commands) const {
     const VkDescriptorSet set = commands.allocate_set(scene_layout_);
     const std::array uniforms{VkDescriptorBufferInfo{frame_buffer_.handle(), 0, VK_WHOLE_SIZE},
                               VkDescriptorBufferInfo{info_buffer_.handle(), 0, VK_WHOLE_SIZE}};
-    const VkDescriptorBufferInfo minmax{minmax_.handle(), 0, VK_WHOLE_SIZE};
+    const VkDescriptorBufferInfo minmax{step_->minmax.handle(), 0, VK_WHOLE_SIZE};
     const VkDescriptorImageInfo sampler{.sampler = sampler_.handle()};
     // Every slot of the array must hold an image: those without a brick repeat the first.
     std::array<VkDescriptorImageInfo, shared::MAX_BRICKS> images;
     for (size_t i = 0; i < images.size(); ++i)
-        images[i] = {VK_NULL_HANDLE, textures_[i < textures_.size() ? i : 0].view(),
+        images[i] = {VK_NULL_HANDLE, step_->bricks[i < step_->bricks.size() ? i : 0].view(),
                      VK_IMAGE_LAYOUT_GENERAL};
     const auto write = [&](uint32_t binding, uint32_t count, VkDescriptorType type,
                            const VkDescriptorBufferInfo* buffer,
@@ -234,10 +252,11 @@ void Grid::begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) 
         write(shared::BIND_SAMPLER, 1, VK_DESCRIPTOR_TYPE_SAMPLER, nullptr, &sampler),
         write(shared::BIND_MINMAX, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, &minmax, nullptr)};
     vkUpdateDescriptorSets(device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
-    commands.set_scene(set);
+    return set;
 }
 
 void Grid::build_minmax(gpu::Commands& commands) const {
+    const auto pass = commands.pass("min-max blocks");
     commands.bind(minmax_blocks_, {});
     commands.dispatch(info_.blocks.x, info_.blocks.y, info_.blocks.z);
     commands.barrier();
@@ -250,66 +269,28 @@ void Grid::build_minmax(gpu::Commands& commands) const {
     }
 }
 
-void Grid::upload(const Volume& volume) {
-    const uint64_t slice = uint64_t{plan_.extent(0).x} * plan_.extent(0).y * stored_.bytes();
-    const uint64_t all = slice * plan_.extent(0).z;
-    gpu::Buffer staging(device_, std::max(slice, std::min(all, STAGING_BYTES)),
-                        gpu::Buffer::Memory::host, "uploading");
-    for (uint32_t brick = 0; brick < plan_.count(); ++brick)
-        upload_brick(volume, brick, staging);
-}
-
-void Grid::upload_brick(const Volume& volume, uint32_t brick, gpu::Buffer& staging) {
-    const glm::uvec3 origin = plan_.origin(brick), extent = plan_.extent(brick);
-    const uint64_t row_bytes = uint64_t{extent.x} * stored_.bytes();
-    const auto slices_at_once =
-        uint32_t(std::min<uint64_t>(staging.bytes() / (row_bytes * extent.y), extent.z));
-    for (uint32_t z = 0; z < extent.z; z += slices_at_once) {
-        const uint32_t slices = std::min(slices_at_once, extent.z - z);
-        std::byte* out = staging.data<std::byte>();
-        for (uint32_t k = z; k < z + slices; ++k)
-            for (uint32_t j = 0; j < extent.y; ++j, out += row_bytes) {
-                const uint64_t row = uint64_t{origin.z + k} * volume.dims[1] + origin.y + j;
-                store_voxels(volume, stored_, row * volume.dims[0] + origin.x, extent.x, out,
-                             range_);
-            }
-        gpu::run_once(device_, [&](gpu::Commands& commands) {
-            if (z == 0) commands.discard_to_general(textures_[brick]);
-            commands.copy_to_texture(staging, textures_[brick], z, slices);
-        });
+void Grid::sample_formula(gpu::Commands& commands) const {
+    const auto pass = commands.pass("sample formula");
+    for (const gpu::Texture& brick : step_->bricks)
+        commands.discard_to_general(brick);
+    for (uint32_t i = 0; i < format_.bricks.count(); ++i) {
+        const glm::uvec3 groups = divide_up(format_.bricks.extent(i), glm::uvec3(8, 8, 1));
+        commands.bind(sample_field_, {step_->bricks[i]});
+        commands.push(SamplePush{*step_->sampling, format_.bricks.origin(i)});
+        commands.dispatch(groups.x, groups.y, groups.z);
     }
-}
-
-void Grid::sample_on_gpu(const Volume& volume) {
-    struct Push {
-        field::FieldSampling sampling;
-        glm::uvec3 origin;
-    };
-    const auto sampler = gpu::Pipeline::compute(
-        device_, {"sample field", scene_layout_, {gpu::Kind::image}, sizeof(Push), {stored_.bits}},
-        sample_field_comp);
-    gpu::run_once(device_, [&](gpu::Commands& commands) {
-        for (uint32_t i = 0; i < plan_.count(); ++i)
-            commands.discard_to_general(textures_[i]);
-        begin_frame(commands, {});
-        for (uint32_t i = 0; i < plan_.count(); ++i) {
-            const glm::uvec3 groups = divide_up(plan_.extent(i), glm::uvec3(8, 8, 1));
-            commands.bind(sampler, {textures_[i]});
-            commands.push(Push{field_sampling(volume), plan_.origin(i)});
-            commands.dispatch(groups.x, groups.y, groups.z);
-        }
-    });
+    commands.barrier();
 }
 
 std::vector<std::array<float, 2>> Grid::read_level(uint32_t level) const {
     const uvec4 nodes = info_.levels[level];
     const uint32_t count = product(nodes);
     // Copies begin and end at whole words.
-    const uint64_t node_bytes = 2 * stored_.bytes(), skip = nodes.w * node_bytes & 3;
+    const uint64_t node_bytes = 2 * stored().bytes(), skip = nodes.w * node_bytes & 3;
     const uint64_t bytes = (count * node_bytes + skip + 3) & ~uint64_t{3};
     gpu::Buffer host(device_, bytes, gpu::Buffer::Memory::host, "reading min-max blocks");
     gpu::run_once(device_, [&](gpu::Commands& commands) {
-        commands.copy(minmax_, nodes.w * node_bytes - skip, host, 0, bytes);
+        commands.copy(step_->minmax, nodes.w * node_bytes - skip, host, 0, bytes);
     });
     std::vector<std::array<float, 2>> ranges(count);
     const auto read = [&](auto zero) {
@@ -318,31 +299,13 @@ std::vector<std::array<float, 2>> Grid::read_level(uint32_t level) const {
         for (size_t i = 0; i < ranges.size(); ++i)
             ranges[i] = {float(values[2 * i]), float(values[2 * i + 1])};
     };
-    if (stored_.bits == 8)
+    if (stored().bits == 8)
         read(uint8_t{});
-    else if (stored_.bits == 16)
+    else if (stored().bits == 16)
         read(uint16_t{});
     else
         read(float{});
     return ranges;
-}
-
-void Grid::find_range() {
-    gpu::run_once(device_, [&](gpu::Commands& commands) {
-        commands.update(info_buffer_, 0, &info_, sizeof(info_));
-        begin_frame(commands, {});
-        build_minmax(commands);
-    });
-    // The root of the pyramid holds the range, except that floats' least value may stand for voxels
-    // that are not finite: then the range is what the upload saw.
-    if (range_.least > range_.greatest) {
-        const auto [least, greatest] = read_level(info_.bricks.w - 1).front();
-        if (greatest != NOT_FINITE) range_ = {least, greatest};
-    }
-    info_.range = {range_.least, range_.greatest, 0, 0};
-    gpu::run_once(device_, [&](gpu::Commands& commands) {
-        commands.update(info_buffer_, 0, &info_, sizeof(info_));
-    });
 }
 
 VoxelPoints Grid::crossed_hull(const std::vector<float>& isovalues) const {

@@ -57,7 +57,7 @@ Volume sphere(VoxelType type) {
 class SelfTest {
 public:
     SelfTest(const gpu::Device& device, const Volume& volume)
-        : grid_(device, volume, 0),
+        : grid_(device, series_of({&volume, 1}), 0, 0),
           placement_{volume.affine, volume.dims},
           depth_(device, sizeof(float) * PICTURE * PICTURE, gpu::Buffer::Memory::host,
                  "the self-test") {

@@ -8,18 +8,23 @@
 
 #include "gpu/device.h"
 #include "image/state.h"
+#include "image/stereo.h"
 
 namespace isorast {
 
 namespace {
 
 // "auto" becomes what the device does best.
-RendererOptions resolved(Gpu& gpu, const Volume& volume, RendererOptions options) {
+RendererOptions resolved(Gpu& gpu, VoxelType type, RendererOptions options) {
     const bool automatic = options.technique == "auto";
     if (automatic) options.technique = options.exact ? "raymarch" : "direct";
     if (options.technique != "direct" || options.rasterizer != Rasterizer::automatic)
         return options;
-    const RasterizerChoice choice = choose_rasterizer(gpu, volume.type);
+    if (options.occlusion == Occlusion::raster) {
+        options.rasterizer = Rasterizer::hardware;
+        return options;
+    }
+    const RasterizerChoice choice = choose_rasterizer(gpu, type);
     options.rasterizer = choice.rasterizer;
     if (choice.rasterizer != Rasterizer::automatic) return options;
     if (!automatic)
@@ -29,12 +34,6 @@ RendererOptions resolved(Gpu& gpu, const Volume& volume, RendererOptions options
                         gpu.info().name, gpu.info().why_not_hardware, choice.problem));
     options.technique = "raymarch";
     return options;
-}
-
-// Checks the volume before anything is made from it.
-Placement place(const Volume& volume) {
-    check(volume);
-    return {volume.affine, volume.dims};
 }
 
 }  // namespace
@@ -49,15 +48,20 @@ std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
         fmt::format("technique: expected one of {}, found '{}'", known, context.options.technique));
 }
 
-Renderer::State::State(Gpu& gpu, const Volume& volume, const RendererOptions& options)
+Renderer::State::State(Gpu& gpu, const Series& series, const RendererOptions& options)
     : device_(gpu.device()),
-      options_(resolved(gpu, volume, options)),
-      placement_(place(volume)),
-      grid_(device_, volume, options.max_brick_side),
+      grid_(device_, series, options.max_brick_side, options.step_bytes),
+      options_(resolved(gpu, grid_.header().type, options)),
+      placement_{grid_.header().affine, grid_.header().dims},
       technique_(make_technique({grid_, options_})),
       shade_(grid_) {
     for (uint32_t i = 0; i < std::max(options.frames_in_flight, 1u); ++i)
         submissions_.push_back(std::make_unique<gpu::Submission>(device_));
+    steps_in_flight_.resize(submissions_.size());
+    host_steps_in_flight_.resize(submissions_.size());
+    if (options.occlusion != Occlusion::automatic && technique_->occlusion() != options.occlusion)
+        throw Error(fmt::format("culling: {} has no {} occlusion test; use --culling auto",
+                                options_.technique, name_of(options.occlusion)));
     counters_readback_ =
         gpu::Buffer(device_, sizeof(shared::Counters), gpu::Buffer::Memory::host, "counters");
 }
@@ -67,12 +71,36 @@ Renderer::State::~State() {
         submission->wait();
 }
 
-void Renderer::State::record(gpu::Commands& commands, const Frame& frame) {
+void Renderer::State::record(gpu::Commands& commands, const Frame& frame,
+                             std::optional<uint32_t>& step) {
     check(frame);
+    if (frame.time_step >= grid_.steps().count())
+        throw Error(fmt::format("{}: expected a time step from 0 to {}, found {}",
+                                grid_.header().name, grid_.steps().count() - 1, frame.time_step));
     if (frame.shading == Shading::forward && !technique_->can_shade_forward())
         throw Error(
             fmt::format("shading: {} with the {} rasterizer cannot shade forward; use gooch",
                         options_.technique, name_of(technique_->rasterizer())));
+    // These commands' last use is over, and with it its step's.
+    step.reset();
+    std::vector<uint32_t> in_flight;
+    for (const auto* steps : {&steps_in_flight_, &host_steps_in_flight_})
+        for (const std::optional<uint32_t>& other : *steps)
+            if (other) in_flight.push_back(*other);
+    grid_.show(frame.time_step, std::move(in_flight));
+    step = frame.time_step;
+    try {
+        record_passes(commands, frame);
+    } catch (...) {
+        // What these commands would have prepared is not there.
+        grid_.forget_pyramid();
+        prepared_step_.reset();
+        target_.size = {0, 0};
+        throw;
+    }
+}
+
+void Renderer::State::record_passes(gpu::Commands& commands, const Frame& frame) {
     if (!target_.fits(frame)) {
         for (auto& submission : submissions_)
             submission->wait();
@@ -80,14 +108,13 @@ void Renderer::State::record(gpu::Commands& commands, const Frame& frame) {
     }
     commands.barrier();
     grid_.begin_frame(commands, make_frame_info(frame, placement_, grid_.stored()));
-
     std::vector<float> isovalues;
     for (double isovalue : frame.isovalues)
         isovalues.push_back(grid_.stored().from_value(isovalue));
-    if (!is_prepared_ || isovalues != prepared_) {
+    if (prepared_step_ != frame.time_step || prepared_isovalues_ != isovalues) {
         technique_->prepare(commands, isovalues);
-        prepared_ = isovalues;
-        is_prepared_ = true;
+        prepared_isovalues_ = std::move(isovalues);
+        prepared_step_ = frame.time_step;
     }
     technique_->record(commands, frame, target_);
     shade_.record(commands, frame, target_);
@@ -96,7 +123,7 @@ void Renderer::State::record(gpu::Commands& commands, const Frame& frame) {
 Image Renderer::State::render(const Frame& frame) {
     gpu::Submission& submission = *submissions_.front();
     gpu::Commands commands = submission.begin();
-    record(commands, frame);
+    record(commands, frame, steps_in_flight_.front());
     fit_readback(frame);
     commands.copy_to_buffer(target_.color, color_readback_);
     if (frame.want_depth) commands.copy_to_buffer(target_.distances, depth_readback_);
@@ -104,6 +131,7 @@ Image Renderer::State::render(const Frame& frame) {
         commands.copy(*technique_->counters(), 0, counters_readback_, 0, sizeof(shared::Counters));
     submission.submit();
     submission.wait();
+    steps_in_flight_.front().reset();
     collect_stats(submission.slot());
     return read_back(frame);
 }
@@ -117,7 +145,7 @@ std::vector<std::vector<gpu::TimedPass>> Renderer::State::run(const std::vector<
         if (i >= in_flight) times[i - in_flight] = submission.slot().times();
         if (i >= frames.size()) continue;
         gpu::Commands commands = submission.begin();
-        record(commands, frames[i]);
+        record(commands, frames[i], steps_in_flight_[i % in_flight]);
         submission.submit();
     }
     return times;
@@ -132,13 +160,16 @@ RecordedFrame Renderer::State::record_for_host(VkCommandBuffer handle, const Fra
         host_slots_.push_back(std::make_unique<gpu::Slot>(device_));
     host_slots_[slot]->reset();
     gpu::Commands commands(device_, handle, *host_slots_[slot]);
-    record(commands, frame);
-    return {target_.color.handle(), target_.color.view(), target_.depth.handle(),
-            target_.depth.view(), target_.depth.format()};
+    record(commands, frame, host_steps_in_flight_[slot]);
+    const auto view = [&](const gpu::Texture& texture) {
+        return target_.eyes == 1 ? texture.layer_view(0) : texture.view();
+    };
+    return {target_.color.handle(), view(target_.color), target_.depth.handle(),
+            view(target_.depth), target_.depth.format()};
 }
 
 void Renderer::State::fit_readback(const Frame& frame) {
-    const uint64_t bytes = uint64_t{4} * frame.size.width * frame.size.height;
+    const uint64_t bytes = uint64_t{4} * frame.size.width * frame.size.height * frame.eyes();
     const auto fit = [&](gpu::Buffer& buffer) {
         if (buffer.bytes() != bytes)
             buffer =
@@ -149,15 +180,15 @@ void Renderer::State::fit_readback(const Frame& frame) {
 }
 
 Image Renderer::State::read_back(const Frame& frame) const {
-    Image image{.size = frame.size};
-    const size_t pixels = size_t{frame.size.width} * frame.size.height;
+    Image image{.size = {frame.size.width, frame.size.height * frame.eyes()}};
+    const size_t pixels = size_t{image.size.width} * image.size.height;
     image.rgba.resize(4 * pixels);
     std::memcpy(image.rgba.data(), color_readback_.data<uint8_t>(), image.rgba.size());
     if (frame.want_depth) {
         image.depth.resize(pixels);
         std::memcpy(image.depth.data(), depth_readback_.data<float>(), 4 * pixels);
     }
-    return image;
+    return frame.eyes() == 1 ? image : arrange(std::move(image), frame.stereo.mode);
 }
 
 void Renderer::State::collect_stats(const gpu::Slot& slot) {
@@ -176,14 +207,18 @@ void Renderer::State::collect_stats(const gpu::Slot& slot) {
         stats_.blocks_active = counters.blocks_active;
         stats_.blocks_drawn = counters.blocks_drawn;
     }
-    stats_.volume_bytes = grid_.volume_bytes();
+    stats_.wait_ms = grid_.steps().wait_ms();
+    stats_.resident_steps = grid_.steps().resident();
+    stats_.volume_bytes = grid_.steps().volume_bytes();
     stats_.extra_bytes = grid_.extra_bytes() + technique_->gpu_bytes();
     stats_.target_bytes = target_.bytes();
     stats_.bricks = grid_.bricks().count();
 }
 
 Renderer::Renderer(Gpu& gpu, const Volume& volume, const RendererOptions& options)
-    : state_(std::make_unique<State>(gpu, volume, options)) {}
+    : Renderer(gpu, series_of({&volume, 1}), options) {}
+Renderer::Renderer(Gpu& gpu, const Series& series, const RendererOptions& options)
+    : state_(std::make_unique<State>(gpu, series, options)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 Image Renderer::render(const Frame& frame) {
@@ -207,6 +242,9 @@ std::string Renderer::technique() const {
 Rasterizer Renderer::rasterizer() const {
     return state_->technique().rasterizer();
 }
+Occlusion Renderer::occlusion() const {
+    return state_->technique().occlusion();
+}
 
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,
                      uint32_t slot) {
@@ -220,15 +258,18 @@ std::vector<std::string> techniques() {
     return names;
 }
 
-std::string what_does_not_fit(const Gpu& gpu, const Volume& volume,
-                              const RendererOptions& options) {
+std::string what_does_not_fit(const Gpu& gpu, const Volume& volume, const RendererOptions& options,
+                              uint32_t time_steps) {
     const gpu::Device& device = gpu.device();
     const GridPlan plan = plan_grid(device, volume, options.max_brick_side);
-    const uint64_t needed = plan.volume_bytes + 2 * plan.minmax_bytes;
+    // Two time steps: one is drawn while the next arrives.
+    const uint32_t steps = std::min(time_steps, 2u);
+    const uint64_t needed = steps * (plan.volume_bytes + plan.minmax_bytes) + plan.minmax_bytes;
     const uint64_t has = device.info().memory_bytes;
     const auto gib = [](uint64_t bytes) { return double(bytes) / double(1 << 30); };
     const std::string needs =
-        fmt::format("{}: needs {:.2f} GiB on {}", volume.name, gib(needed), device.info().name);
+        fmt::format("{}: needs {:.2f} GiB{} on {}", volume.name, gib(needed),
+                    steps > 1 ? " for two time steps" : "", device.info().name);
     if (needed > has)
         return fmt::format(
             "{}, {:.2f} GiB more than its {:.2f} GiB; use another device or a smaller volume",

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 8x8 pixels. Thread: one pixel. Out: its colour and its distance, from the technique's
+// Workgroup: 8x8 pixels of one eye. Thread: one pixel. Out: its colour and its distance, from the technique's
 // depth: unproject, move the hit onto the trilinear surface, take the gradient, shade. One pass for
 // all techniques.
 #include "shaders/scene.glsl"
@@ -15,10 +15,10 @@ layout(constant_id = 1) const bool WRITE_COLOR = true;     // and refine the hit
 layout(constant_id = 2) const bool WRITE_DISTANCE = false;
 layout(constant_id = 3) const bool MARK_VISIBLE = false;   // for the next frame's culling
 
-layout(set = 1, binding = 0) uniform texture2D depth;
-layout(set = 1, binding = 1) uniform utexture2D surface_numbers;
-layout(set = 1, binding = 2, rgba8) writeonly uniform image2D color;
-layout(set = 1, binding = 3, r32f) writeonly uniform image2D distances;
+layout(set = 1, binding = 0) uniform texture2DArray depth;
+layout(set = 1, binding = 1) uniform utexture2DArray surface_numbers;
+layout(set = 1, binding = 2, rgba8) writeonly uniform image2DArray color;
+layout(set = 1, binding = 3, r32f) writeonly uniform image2DArray distances;
 #define VISIBLE_BLOCKS_BINDING 4
 #include "shaders/visible_blocks.glsl"
 
@@ -101,13 +101,13 @@ vec4 shade(Ray ray, Hit hit, vec3 surface_color) {
 }
 
 void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(frame.size.xy)))) return;
+    const ivec3 pixel = ivec3(gl_GlobalInvocationID);  // z: the eye
+    if (any(greaterThanEqual(pixel.xy, ivec2(frame.size.xy)))) return;
     const float z = texelFetch(depth, pixel, 0).r;
     vec4 result = frame.background;
     float t = uintBitsToFloat(0x7f800000u);  // infinity
     if (z > 0.0) {
-        const Ray ray = pixel_ray(vec2(pixel) + 0.5);
+        const Ray ray = pixel_ray(pixel.z, vec2(pixel.xy) + 0.5);
         t = view_depth(z);
         if (MARK_VISIBLE) mark_visible(cell_of(ray.origin + t * ray.direction));
         if (WRITE_COLOR) {

@@ -30,7 +30,7 @@ void Shade::record(gpu::Commands& commands, const Frame& frame, const Target& ta
     commands.bind(pipeline(color, frame.want_depth, mark),
                   {target.depth, target.surfaces, target.color, target.distances,
                    mark ? *target.visible_blocks : no_blocks_});
-    commands.dispatch((target.size.width + 7) / 8, (target.size.height + 7) / 8);
+    commands.dispatch((target.size.width + 7) / 8, (target.size.height + 7) / 8, target.eyes);
     commands.barrier();
 }
 

@@ -4,6 +4,7 @@
 #include <isorast/embed.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gpu/commands.h"
@@ -20,11 +21,9 @@ std::unique_ptr<Technique> make_technique(const TechniqueContext& context);
 
 class Renderer::State {
 public:
-    State(Gpu& gpu, const Volume& volume, const RendererOptions& options);
+    State(Gpu& gpu, const Series& series, const RendererOptions& options);
     ~State();
 
-    // One frame into the caller's commands.
-    void record(gpu::Commands& commands, const Frame& frame);
     Image render(const Frame& frame);
     RecordedFrame record_for_host(VkCommandBuffer commands, const Frame& frame, uint32_t slot);
     // Submits frames without reading them back, several in flight; their passes' times, in order.
@@ -36,21 +35,26 @@ public:
     const FrameStats& stats() const { return stats_; }
 
 private:
+    // One frame into these commands; `step` keeps its time step while it may be in flight.
+    void record(gpu::Commands& commands, const Frame& frame, std::optional<uint32_t>& step);
+    void record_passes(gpu::Commands& commands, const Frame& frame);
     Image read_back(const Frame& frame) const;
     void fit_readback(const Frame& frame);
     void collect_stats(const gpu::Slot& slot);
 
     const gpu::Device& device_;
+    Grid grid_;
     RendererOptions options_;
     Placement placement_;
-    Grid grid_;
     std::unique_ptr<Technique> technique_;
     Shade shade_;
     Target target_;
-    std::vector<float> prepared_;  // the isovalues that the technique is prepared for
-    bool is_prepared_ = false;
+    // What the technique is prepared for.
+    std::vector<float> prepared_isovalues_;
+    std::optional<uint32_t> prepared_step_;
     std::vector<std::unique_ptr<gpu::Submission>> submissions_;
     std::vector<std::unique_ptr<gpu::Slot>> host_slots_;
+    std::vector<std::optional<uint32_t>> steps_in_flight_, host_steps_in_flight_;  // one for each
     gpu::Buffer color_readback_, depth_readback_, counters_readback_;
     FrameStats stats_;
 };

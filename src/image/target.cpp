@@ -17,13 +17,15 @@ bool is_whole(const gpu::Texture& texture, Size size) {
 }  // namespace
 
 bool Target::fits(const Frame& frame) const {
-    return size == frame.size && (frame.isovalues.size() <= 1 || is_whole(surfaces, size)) &&
+    return size == frame.size && eyes == frame.eyes() &&
+           (frame.isovalues.size() <= 1 || is_whole(surfaces, size)) &&
            (!frame.want_depth || is_whole(distances, size));
 }
 
 void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame& frame,
                  bool hardware) {
     size = frame.size;
+    eyes = frame.eyes();
     const VkExtent3D whole{size.width, size.height, 1}, one{1, 1, 1};
     const VkImageUsageFlags always = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     const VkImageUsageFlags storage =
@@ -34,9 +36,13 @@ void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame
     const VkImageUsageFlags attachment = always | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     const auto make = [&](gpu::Texture& texture, VkFormat format, VkExtent3D extent,
                           VkImageUsageFlags usage, const char* what) {
-        const bool as_bits = format == VK_FORMAT_R32_SFLOAT;
-        texture = gpu::Texture(
-            device, {.format = format, .extent = extent, .usage = usage, .as_bits = as_bits}, what);
+        texture = gpu::Texture(device,
+                               {.format = format,
+                                .extent = extent,
+                                .usage = usage,
+                                .layers = frame.eyes(),
+                                .as_bits = format == VK_FORMAT_R32_SFLOAT},
+                               what);
         commands.discard_to_general(texture);
     };
     make(color, VK_FORMAT_R8G8B8A8_UNORM, whole, both, "the picture");

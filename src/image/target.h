@@ -15,7 +15,8 @@ class Device;
 
 // Depth is reversed: 1 at the near plane, 0 at the far plane and where there is no surface.
 struct Target {
-    Size size{0, 0};
+    Size size{0, 0};     // of each eye's picture
+    uint32_t eyes = 0;   // layers of the images
     gpu::Texture color;  // R8G8B8A8_UNORM
     gpu::Texture depth;  // D32_SFLOAT for the hardware rasterizer, R32_SFLOAT for compute
     // 1x1 where a frame does not need them: the number of the surface in each pixel, R32_UINT

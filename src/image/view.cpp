@@ -31,11 +31,12 @@ constexpr std::array<Color, 8> PALETTE{{{0.89f, 0.80f, 0.66f, 1},
                                         {0.40f, 0.45f, 0.70f, 1},
                                         {0.60f, 0.60f, 0.60f, 1}}};
 
-// The camera's axes and its half extents at unit view depth (perspective) or everywhere
-// (orthographic).
+// An eye's axes and its half extents at unit view depth (perspective) or everywhere (orthographic).
+// The middle of its picture moves by `shift` along `right` for each unit of view depth: 0 for one
+// eye, while two look the same way and see the same at the distance of convergence.
 struct Eye {
     dvec3 position, forward, right, up;
-    double half_width = 1, half_height = 1, near = 0, far = 1;
+    double half_width = 1, half_height = 1, near = 0, far = 1, shift = 0;
     bool orthographic = false;
 };
 
@@ -55,6 +56,17 @@ Eye make_eye(const Camera& camera, Size size) {
                                             : std::tan(0.5 * glm::radians(camera.fov_degrees));
     eye.half_width = half * std::max(1.0, aspect);
     eye.half_height = half * std::max(1.0, 1 / aspect);
+    return eye;
+}
+
+// One eye of two: an offset along the right axis, and a frustum that is not symmetric.
+Eye moved(Eye eye, const Frame& frame, int side) {
+    const double distance =
+        glm::length(to_vec(frame.camera.target) - to_vec(frame.camera.position));
+    const double convergence = frame.stereo.convergence.value_or(distance);
+    const double offset = 0.5 * side * frame.stereo.separation.value_or(convergence / 30);
+    eye.position += offset * eye.right;
+    eye.shift = -offset / convergence;
     return eye;
 }
 
@@ -91,18 +103,19 @@ dmat4 clip_from_world(const Eye& eye) {
     const auto row = [&](const dvec3& axis, double scale) {
         return dvec4(axis * scale, -glm::dot(axis, eye.position) * scale);
     };
-    const dvec4 x = row(eye.right, 1 / eye.half_width), y = row(eye.up, -1 / eye.half_height);
     const dvec4 depth = row(eye.forward, 1), one(0, 0, 0, 1);
+    const dvec4 x = row(eye.right, 1 / eye.half_width) - depth * (eye.shift / eye.half_width);
+    const dvec4 y = row(eye.up, -1 / eye.half_height);
     const double range = eye.far - eye.near;
     const dvec4 z = eye.orthographic ? (eye.far * one - depth) / range
                                      : (eye.near * eye.far * one - eye.near * depth) / range;
     return glm::transpose(dmat4(x, y, z, eye.orthographic ? one : depth));
 }
 
-void set_rays(shared::FrameInfo& info, const Eye& eye, const dmat4& voxel) {
+void set_rays(shared::EyeInfo& info, const Eye& eye, const dmat4& voxel) {
     const dmat3 linear(voxel);
     const dvec3 x = linear * eye.right * eye.half_width, y = -(linear * eye.up * eye.half_height);
-    const dvec3 none(0), forward = linear * eye.forward;
+    const dvec3 none(0), forward = linear * (eye.forward + eye.shift * eye.right);
     const auto pad = [](const dvec3& v) { return glm::vec4(glm::vec3(v), 0); };
     info.ray_origin = pad(dvec3(voxel * dvec4(eye.position, 1)));
     info.ray_direction = pad(forward);
@@ -112,7 +125,7 @@ void set_rays(shared::FrameInfo& info, const Eye& eye, const dmat4& voxel) {
     info.ray_direction_y = pad(eye.orthographic ? none : y);
 }
 
-void set_planes(shared::FrameInfo& info, const dmat4& clip) {
+void set_planes(shared::EyeInfo& info, const dmat4& clip) {
     const dmat4 rows = glm::transpose(clip);
     for (int axis = 0; axis < 2; ++axis) {
         info.planes[2 * axis] = glm::vec4(rows[3] + rows[axis]);
@@ -122,12 +135,45 @@ void set_planes(shared::FrameInfo& info, const dmat4& clip) {
     info.planes[5] = glm::vec4(rows[3] - rows[2]);  // near
 }
 
+// Clip planes as the world has them, in voxel space and as each eye sees them. A plane is a row: it
+// follows the inverse matrix.
+void set_clips(shared::FrameInfo& info, const Frame& frame, const dmat4& world,
+               const std::vector<dmat4>& clip_from_voxel) {
+    for (size_t i = 0; i < frame.clips.size(); ++i) {
+        const dvec3 normal = to_vec(frame.clips[i].normal);
+        const dvec4 plane = dvec4(normal, -frame.clips[i].offset) / glm::length(normal) * world;
+        info.clips[i] = glm::vec4(plane);
+        for (size_t eye = 0; eye < clip_from_voxel.size(); ++eye)
+            info.eyes[eye].clips[i] = glm::vec4(plane * glm::inverse(clip_from_voxel[eye]));
+    }
+}
+
 void set_surfaces(shared::FrameInfo& info, const Frame& frame, const Stored& stored) {
     for (size_t i = 0; i < frame.isovalues.size(); ++i) {
         const Color& color =
             i < frame.colors.size() ? frame.colors[i] : PALETTE[i % PALETTE.size()];
         info.surfaces[i] = {color.r, color.g, color.b, stored.from_value(frame.isovalues[i])};
     }
+}
+
+void check_clips(const Frame& frame) {
+    if (frame.clips.size() > shared::MAX_CLIPS)
+        throw Error(fmt::format("clip planes: at most {}, found {}", shared::MAX_CLIPS,
+                                frame.clips.size()));
+    for (const ClipPlane& clip : frame.clips) {
+        const double length = glm::length(to_vec(clip.normal));
+        if (!(length > 0) || !std::isfinite(length) || !std::isfinite(clip.offset))
+            throw Error(
+                "clip planes: expected a finite normal that is not zero, and a finite offset");
+    }
+}
+
+void check(const Stereo& stereo) {
+    const auto is_length = [](const std::optional<double>& value) {
+        return !value || (std::isfinite(*value) && *value > 0);
+    };
+    if (!is_length(stereo.separation) || !is_length(stereo.convergence))
+        throw Error("stereo: expected a positive eye separation and convergence distance");
 }
 
 }  // namespace
@@ -157,20 +203,29 @@ void check(const Frame& frame) {
     if (camera.orthographic && !(camera.height > 0))
         throw Error(fmt::format("camera: expected a positive orthographic height, found {}",
                                 camera.height));
+    check_clips(frame);
+    check(frame.stereo);
 }
 
 shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement,
                                   const Stored& stored) {
-    Eye eye = make_eye(frame.camera, frame.size);
+    Eye middle = make_eye(frame.camera, frame.size);
     const dmat4 world = world_from_voxel(placement.affine), voxel = glm::inverse(world);
-    fit_depth(eye, world, placement.dims);
-    const dmat4 clip = clip_from_world(eye) * world;
+    fit_depth(middle, world, placement.dims);
     shared::FrameInfo info{};
-    info.clip_from_voxel = glm::mat4(clip);
-    set_rays(info, eye, voxel);
-    set_planes(info, clip);
+    std::vector<dmat4> clip_from_voxel;
+    for (uint32_t i = 0; i < frame.eyes(); ++i) {
+        const Eye eye = frame.eyes() == 1 ? middle : moved(middle, frame, i == 0 ? -1 : 1);
+        const dmat4 clip = clip_from_world(eye) * world;
+        clip_from_voxel.push_back(clip);
+        info.eyes[i].clip_from_voxel = glm::mat4(clip);
+        set_rays(info.eyes[i], eye, voxel);
+        set_planes(info.eyes[i], clip);
+    }
+    set_clips(info, frame, world, clip_from_voxel);
     set_surfaces(info, frame, stored);
-    info.depth_range = {float(eye.near), float(eye.far), eye.orthographic ? 1.0f : 0.0f, 0};
+    info.depth_range = {float(middle.near), float(middle.far), middle.orthographic ? 1.0f : 0.0f,
+                        0};
     // Normals follow the inverse transpose: its rows are the columns of the inverse.
     const dmat3 normal = glm::transpose(dmat3(voxel));
     const dmat4 rows = glm::transpose(world), normal_rows = dmat4(glm::transpose(normal));
@@ -181,12 +236,13 @@ shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement
     info.world_y = glm::vec4(rows[1]);
     info.world_z = glm::vec4(rows[2]);
     // The light comes from behind the viewer's left shoulder.
-    info.light =
-        glm::vec4(glm::normalize(glm::vec3(-eye.forward - 0.5 * eye.right + 0.7 * eye.up)), 0);
+    const dvec3 light = -middle.forward - 0.5 * middle.right + 0.7 * middle.up;
+    info.light = glm::vec4(glm::normalize(glm::vec3(light)), 0);
     info.background = {frame.background.r, frame.background.g, frame.background.b,
                        frame.background.a};
     info.size = {frame.size.width, frame.size.height, frame.isovalues.size(),
                  uint32_t(frame.shading)};
+    info.counts = {frame.eyes(), frame.clips.size(), 0, 0};
     return info;
 }
 

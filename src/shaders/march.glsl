@@ -115,7 +115,13 @@ bool first_hit(Ray ray, float iso, out float hit) {
     const vec3 a = -ray.origin * march.inverse, b = (last - ray.origin) * march.inverse;
     const vec3 enter = min(a, b), leave = max(a, b);
     march.t = max(max(max(enter.x, enter.y), enter.z), frame.depth_range.x);
-    const float end = min(min(min(leave.x, leave.y), leave.z), frame.depth_range.y);
+    float end = min(min(min(leave.x, leave.y), leave.z), frame.depth_range.y);
+    for (uint i = 0; i < frame.counts.y; ++i) {
+        const float across = dot(frame.clips[i].xyz, ray.direction);
+        const float t = -(dot(frame.clips[i].xyz, ray.origin) + frame.clips[i].w) / across;
+        if (across > 0.0) march.t = max(march.t, t);
+        else end = min(end, t);
+    }
 
     const uint top = grid.bricks.w - 1;
     uint level = top;
@@ -141,4 +147,19 @@ bool first_hit(Ray ray, float iso, out float hit) {
     }
     hit = march.t;
     return march.t < end && march.known;
+}
+
+// The first surface along the ray, as t, and its number; false if there is none.
+bool nearest_hit(Ray ray, out float nearest, out uint number) {
+    bool found = false;
+    nearest = 0.0;
+    number = 0;
+    for (uint i = 0; i < frame.size.z; ++i) {
+        float t;
+        if (!first_hit(ray, frame.surfaces[i].w, t) || (found && t >= nearest)) continue;
+        found = true;
+        nearest = t;
+        number = i;
+    }
+    return found;
 }

@@ -34,6 +34,7 @@ ISORAST_CONSTANT uint MAX_LIST_GROUPS = 32768;
 ISORAST_CONSTANT uint MAX_LEVELS = 30;  // of the min-max pyramid: any number of blocks a side
 ISORAST_CONSTANT uint MAX_BRICKS = 64;
 ISORAST_CONSTANT uint MAX_SURFACES = 32;  // opaque surfaces in one picture
+ISORAST_CONSTANT uint MAX_CLIPS = 8;      // clip planes
 
 // Descriptor set 0, the same in every pipeline.
 ISORAST_CONSTANT uint BIND_FRAME = 0, BIND_GRID = 1, BIND_BRICKS = 2, BIND_SAMPLER = 3,
@@ -45,26 +46,34 @@ struct GridInfo {
     uvec4 groups;       // xyz: groups along each axis; w: all
     uvec4 brick_cells;  // xyz: cells of a brick along each axis, whole blocks
     uvec4 bricks;       // xyz: bricks along each axis; w: levels of the min-max pyramid
-    vec4 range;  // x, y: least and greatest finite stored value (filled once the pyramid is built)
+    vec4 range;  // x: the least value that gradients see; voxels that are not finite do no harm so
     uvec4 levels[MAX_LEVELS];  // xyz: nodes along each axis; w: index of the level's first node
 };
 
-// One frame. Positions are in voxel space: voxel centres at whole numbers.
-struct FrameInfo {
+// What one eye sees. Positions are in voxel space: voxel centres at whole numbers.
+struct EyeInfo {
     mat4 clip_from_voxel;  // reversed depth: 1 at the near plane, 0 at the far plane
     // The ray of the point (x, y) in normalized device coordinates: origin + x*origin_x +
     // y*origin_y, and the same for its direction, whose length is one unit of view depth in the
     // world.
     vec4 ray_origin, ray_origin_x, ray_origin_y;
     vec4 ray_direction, ray_direction_x, ray_direction_y;
+    vec4 planes[6];         // of the frustum, inside is positive
+    vec4 clips[MAX_CLIPS];  // clip planes for (x, y, depth, 1) in normalized device coordinates
+};
+
+// One frame of one or two eyes, which look the same way: a point has the same depth for both.
+struct FrameInfo {
+    EyeInfo eyes[2];
     vec4 depth_range;                   // near, far (view depth, world units); z: 1 if orthographic
-    vec4 planes[6];                     // of the frustum, inside is positive
+    vec4 clips[MAX_CLIPS];              // clip planes in voxel space, kept is positive
     vec4 normal_x, normal_y, normal_z;  // rows: world normal from a gradient in voxel space
     vec4 world_x, world_y, world_z;     // rows: world position from voxel space
     vec4 light;                         // xyz: direction towards the light, world; w unused
     vec4 background;                    // sRGB, alpha
-    uvec4 size;                         // width, height; z: surfaces; w: Shading
-    vec4 surfaces[MAX_SURFACES];        // rgb: sRGB colour; w: isovalue in stored units
+    uvec4 size;                   // width, height of an eye's picture; z: surfaces; w: Shading
+    uvec4 counts;                 // x: eyes; y: clip planes
+    vec4 surfaces[MAX_SURFACES];  // rgb: sRGB colour; w: isovalue in stored units
 };
 
 // What the passes count; see FrameStats.
@@ -74,7 +83,9 @@ struct Counters {
 
 #ifdef __cplusplus
 static_assert(sizeof(GridInfo) == 16 * (6 + MAX_LEVELS));
-static_assert(sizeof(FrameInfo) == 64 + 16 * (6 + 1 + 6 + 3 + 3 + 1 + 1 + 1 + MAX_SURFACES));
+static_assert(sizeof(EyeInfo) == 64 + 16 * (6 + 6 + MAX_CLIPS));
+static_assert(sizeof(FrameInfo) ==
+              2 * sizeof(EyeInfo) + 16 * (1 + MAX_CLIPS + 3 + 3 + 1 + 1 + 1 + 1 + MAX_SURFACES));
 }  // namespace isorast::shared
 #endif
 #endif

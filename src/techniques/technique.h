@@ -25,6 +25,8 @@ public:
 
     virtual Rasterizer rasterizer() const = 0;  // hardware or compute, never automatic
     virtual bool can_shade_forward() const { return false; }
+    // raster or hiz; automatic: it has no occlusion culling.
+    virtual Occlusion occlusion() const { return Occlusion::automatic; }
 
     // Work that depends on the isovalues (stored units) only. Set 0 is bound; ends with a barrier.
     virtual void prepare(gpu::Commands& commands, const std::vector<float>& isovalues) = 0;

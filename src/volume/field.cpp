@@ -7,6 +7,7 @@
 #include <isorast/error.h>
 
 #include <cstring>
+#include <numbers>
 #include <thread>
 
 #include "volume/text.h"
@@ -31,7 +32,7 @@ constexpr std::array<FieldKind, 6> KINDS{{
     {"noise", Field::Kind::noise, 0.5, {0, 1}},
     {"coral", Field::Kind::coral, 0.5, {0, 1}},
 }};
-constexpr uint32_t MAX_SIDE = 65536, MAX_OCTAVES = 16;
+constexpr uint32_t MAX_SIDE = 65536, MAX_OCTAVES = 16, MAX_STEPS = 65536;
 
 const FieldKind& kind_of(Field::Kind kind) {
     return KINDS.at(size_t(kind));
@@ -53,7 +54,7 @@ class Parser {
 public:
     explicit Parser(std::string_view name) : name_(name) {}
 
-    Volume parse() {
+    Volume parse(uint32_t time_step) {
         auto parts = parts_of(name_, ':');
         volume_.name = name_;
         volume_.type = VoxelType::f32;
@@ -63,6 +64,7 @@ public:
         parse_dims(parts[1]);
         for (size_t i = 2; i < parts.size(); ++i)
             parse_option(parts[i]);
+        set_time(time_step);
         place();
         check(volume_);
         return std::move(volume_);
@@ -110,12 +112,16 @@ private:
             parse_type(word);
         } else if (equals != part.npos && key == "spacing") {
             parse_spacing(word);
+        } else if (equals != part.npos && key == "steps") {
+            volume_.time_steps = parse_uint(word, 1, MAX_STEPS, "time steps");
         } else if (equals != part.npos && noise && key == "octaves") {
             volume_.field->octaves = parse_uint(word, 1, MAX_OCTAVES, "octaves");
         } else if (equals != part.npos && noise && key == "seed") {
             volume_.field->seed = parse_uint(word, 0, UINT32_MAX, "a seed");
         } else {
-            fail_at(noise ? "octaves=, seed=, type= or spacing=" : "type= or spacing=", part);
+            fail_at(
+                noise ? "octaves=, seed=, type=, spacing= or steps=" : "type=, spacing= or steps=",
+                part);
         }
     }
 
@@ -140,6 +146,14 @@ private:
             spacing_[axis] = *number;
         }
         spacing_given_ = true;
+    }
+
+    void set_time(uint32_t step) {
+        if (step >= volume_.time_steps)
+            fail(fmt::format("a time step from 0 to {}", volume_.time_steps - 1),
+                 std::to_string(step));
+        volume_.time_step = step;
+        volume_.field->time = double(step) / volume_.time_steps;
     }
 
     // The middle of the volume is the world's origin.
@@ -189,6 +203,8 @@ field::FieldSampling field_sampling(const Volume& volume) {
     s.kind = uint32_t(field.kind);
     s.octaves = field.octaves;
     s.seed = field.seed;
+    const double phase = 2 * std::numbers::pi * field.time;
+    s.motion = {float(phase), float(std::sin(phase)), float(1 - std::cos(phase))};
     // The longest side of the box, in world units, spans [-1, 1]: spacing changes the grid, not the
     // shape.
     auto spacing = volume.affine.spacing();
@@ -217,8 +233,8 @@ bool is_procedural(std::string_view name) {
                        [&](const FieldKind& kind) { return kind.name == name.substr(0, colon); });
 }
 
-Volume make_procedural(std::string_view name) {
-    return Parser(name).parse();
+Volume make_procedural(std::string_view name, uint32_t time_step) {
+    return Parser(name).parse(time_step);
 }
 
 void sample(Volume& volume) {

@@ -30,6 +30,14 @@ const uint FIELD_NOISE = 4u, FIELD_CORAL = 5u;
 
 const float FIELD_PI = 3.14159265358979f;
 
+// Where in its one period of time a formula is. The host computes all three, so that CPU and GPU
+// get the same bits; all are 0 in a volume without time, and then change no formula by a bit.
+struct FieldMotion {
+    float phase;  // 0 to 2 pi
+    float swing;  // sin(phase)
+    float swell;  // 1 - cos(phase), 0 to 2
+};
+
 // sin(r) for |r| <= pi/2: the minimax polynomial of degree 9, absolute error 5e-9 before rounding.
 FIELD_FUNCTION float field_sine_core(float r) {
     FIELD_PRECISE float s = r * r;
@@ -68,28 +76,38 @@ FIELD_FUNCTION float field_length(float x, float y, float z) {
     return sqrt(squares);
 }
 
-FIELD_FUNCTION float field_sphere(float x, float y, float z) {
-    return 1.0f - field_length(x, y, z);
+// Solids breathe: grow by a quarter and shrink again.
+FIELD_FUNCTION float field_breath(FieldMotion m) {
+    FIELD_PRECISE float scale = 1.0f - 0.1f * m.swell;
+    return scale;
 }
 
-FIELD_FUNCTION float field_torus(float x, float y, float z) {
-    return 0.25f - field_length(field_length(x, y, 0.0f) - 0.6f, z, 0.0f);
+FIELD_FUNCTION float field_sphere(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float value = 1.0f - field_breath(m) * field_length(x, y, z);
+    return value;
 }
 
-FIELD_FUNCTION float field_gyroid(float x, float y, float z) {
-    const float k = 2.0f * FIELD_PI;
-    FIELD_PRECISE float sum = field_sin(k * x) * field_cos(k * y) +
-                              field_sin(k * y) * field_cos(k * z) +
-                              field_sin(k * z) * field_cos(k * x);
+FIELD_FUNCTION float field_torus(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float s = field_breath(m), a = s * x, b = s * y, c = s * z;
+    return 0.25f - field_length(field_length(a, b, 0.0f) - 0.6f, c, 0.0f);
+}
+
+// Waves travel: along x.
+FIELD_FUNCTION float field_gyroid(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float a = 2.0f * FIELD_PI * x + m.phase;
+    FIELD_PRECISE float b = 2.0f * FIELD_PI * y, c = 2.0f * FIELD_PI * z;
+    FIELD_PRECISE float sum =
+        field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
     return sum;
 }
 
 // Marschner & Lobb, "An evaluation of reconstruction filters for volume rendering", 1994,
-// section 5.
-FIELD_FUNCTION float field_marschner_lobb(float x, float y, float z) {
+// section 5. Its ripples run outwards.
+FIELD_FUNCTION float field_marschner_lobb(FieldMotion m, float x, float y, float z) {
     const float frequency = 6.0f, alpha = 0.25f;
     FIELD_PRECISE float phase =
-        2.0f * FIELD_PI * frequency * field_cos(FIELD_PI / 2.0f * field_length(x, y, 0.0f));
+        2.0f * FIELD_PI * frequency * field_cos(FIELD_PI / 2.0f * field_length(x, y, 0.0f)) +
+        m.phase;
     FIELD_PRECISE float sum =
         1.0f - field_sin(FIELD_PI / 2.0f * z) + alpha * (1.0f + field_cos(phase));
     return sum * (1.0f / (2.0f * (1.0f + alpha)));
@@ -131,12 +149,15 @@ FIELD_FUNCTION float field_value_noise(float x, float y, float z, uint seed) {
 }
 
 // Octaves of value noise: each has twice the frequency and 0.62 of the amplitude of the one before.
-FIELD_FUNCTION float field_noise(uint octaves, uint seed, float x, float y, float z) {
+// In time each goes round a circle of one lattice cell's radius, every other one the other way.
+FIELD_FUNCTION float field_noise(FieldMotion m, uint octaves, uint seed, float x, float y,
+                                 float z) {
     FIELD_PRECISE float amplitude = 0.5f, frequency = 6.0f, sum = 0.0f;
     for (uint octave = 0u; octave < octaves; ++octave) {
         FIELD_PRECISE float shift = float(octave) * 17.3f;  // so that the lattices do not coincide
-        FIELD_PRECISE float a = (x + 1.0f) * 0.5f * frequency + shift;
-        FIELD_PRECISE float b = (y + 1.0f) * 0.5f * frequency + shift;
+        FIELD_PRECISE float swing = (octave & 1u) == 0u ? m.swing : -m.swing;
+        FIELD_PRECISE float a = (x + 1.0f) * 0.5f * frequency + shift + swing;
+        FIELD_PRECISE float b = (y + 1.0f) * 0.5f * frequency + shift + m.swell;
         FIELD_PRECISE float c = (z + 1.0f) * 0.5f * frequency + shift;
         sum = sum + amplitude * (field_value_noise(a, b, c, seed) - 0.5f);
         amplitude = amplitude * 0.62f;
@@ -147,28 +168,30 @@ FIELD_FUNCTION float field_noise(uint octaves, uint seed, float x, float y, floa
 }
 
 // A ball with a fine gyroid carved in, like a piece of coral: large empty and full parts, and much
-// detail.
-FIELD_FUNCTION float field_coral(float x, float y, float z) {
-    FIELD_PRECISE float a = 14.0f * (x + 1.0f), b = 14.0f * (y + 1.0f), c = 14.0f * (z + 1.0f);
+// detail. The ball breathes, and the gyroid travels through it.
+FIELD_FUNCTION float field_coral(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float a = 14.0f * (x + 1.0f) + m.phase, b = 14.0f * (y + 1.0f),
+                        c = 14.0f * (z + 1.0f);
     FIELD_PRECISE float gyroid =
         field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
-    FIELD_PRECISE float inside = 0.47f - 0.5f * field_length(x, y, z);
+    FIELD_PRECISE float inside = 0.47f - 0.5f * field_breath(m) * field_length(x, y, z);
     FIELD_PRECISE float steep = 3.0f * inside;
     FIELD_PRECISE float skin = min(steep, 0.35f);
     FIELD_PRECISE float value = 0.5f + min(steep, 0.0f) + 0.22f * (0.6f * gyroid + max(skin, 0.0f));
     return min(max(value, 0.0f), 1.0f);
 }
 
-FIELD_FUNCTION float field_value(uint kind, uint octaves, uint seed, float x, float y, float z) {
-    if (kind == FIELD_SPHERE) return field_sphere(x, y, z);
-    if (kind == FIELD_TORUS) return field_torus(x, y, z);
-    if (kind == FIELD_GYROID) return field_gyroid(x, y, z);
-    if (kind == FIELD_MARSCHNER_LOBB) return field_marschner_lobb(x, y, z);
-    if (kind == FIELD_NOISE) return field_noise(octaves, seed, x, y, z);
-    return field_coral(x, y, z);
+FIELD_FUNCTION float field_value(FieldMotion m, uint kind, uint octaves, uint seed, float x,
+                                 float y, float z) {
+    if (kind == FIELD_SPHERE) return field_sphere(m, x, y, z);
+    if (kind == FIELD_TORUS) return field_torus(m, x, y, z);
+    if (kind == FIELD_GYROID) return field_gyroid(m, x, y, z);
+    if (kind == FIELD_MARSCHNER_LOBB) return field_marschner_lobb(m, x, y, z);
+    if (kind == FIELD_NOISE) return field_noise(m, octaves, seed, x, y, z);
+    return field_coral(m, x, y, z);
 }
 
-// Everything that sampling a field into a volume needs, on either side; scalar layout, 48 bytes.
+// Everything that sampling a field into a volume needs, on either side; scalar layout, 60 bytes.
 struct FieldSampling {
     uint kind, octaves, seed;
     uint dims[3];         // voxels of the whole volume along i, j, k
@@ -176,6 +199,7 @@ struct FieldSampling {
     float lowest;         // the value of raw 0, integer types only
     float raw_per_value;  // integer types only
     float raw_maximum;    // 255 or 65535; 0 for f32, which keeps the value itself
+    FieldMotion motion;
 };
 
 // One product of whole numbers and the scale, so that both sides get the same bits.
@@ -184,7 +208,8 @@ FIELD_FUNCTION float field_sample_position(uint index, uint side, float scale) {
 }
 
 FIELD_FUNCTION float field_sample(FieldSampling s, uint i, uint j, uint k) {
-    return field_value(s.kind, s.octaves, s.seed, field_sample_position(i, s.dims[0], s.scale[0]),
+    return field_value(s.motion, s.kind, s.octaves, s.seed,
+                       field_sample_position(i, s.dims[0], s.scale[0]),
                        field_sample_position(j, s.dims[1], s.scale[1]),
                        field_sample_position(k, s.dims[2], s.scale[2]));
 }
@@ -196,7 +221,7 @@ FIELD_FUNCTION uint field_raw(FieldSampling s, float value) {
 }
 
 #ifdef __cplusplus
-static_assert(sizeof(FieldSampling) == 48);
+static_assert(sizeof(FieldSampling) == 60);
 }  // namespace isorast::field
 
 namespace isorast {

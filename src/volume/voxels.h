@@ -39,6 +39,9 @@ decltype(auto) with_type(VoxelType type, F&& f) {
     return f(double{});
 }
 
+// All but the voxels.
+Volume header_of(const Volume& volume);
+
 // Bytes of dims and type. Throws Error for an empty dimension and for products beyond 63 bits.
 uint64_t checked_byte_count(const Volume& volume);
 

@@ -89,6 +89,10 @@ class Usage(CommandLine):
             "--rasterizer": ["cpu"],
             "--shading": ["goch"],
             "--culling": ["yes"],
+            "--clip": ["x", "x=1", "w>1", "x>", "x>1e", "x>nan", "x>1%%"],
+            "--stereo": ["both"],
+            "--eye-separation": ["0", "-1"],
+            "--convergence": ["near"],
             "--color": ["#12345", "#ggg", "rde", "#1234567"],
             "--background": ["nocolor"],
             "--view": ["x", "front", "+w", "a"],
@@ -114,7 +118,8 @@ class Usage(CommandLine):
     def test_options_that_exclude_or_need_each_other(self):
         for words in [["--view", "+x", "--azimuth", "3"], ["--camera-position", "1,2,3", "--roll", "3"],
                       ["--camera-target", "1,2,3"], ["--tolerance", "3"], ["-o", "-", "--json"],
-                      ["--color", "red,blue", "--iso", "0.5"]]:
+                      ["--color", "red,blue", "--iso", "0.5"], ["--stereo", "layers", "-o", "-"],
+                      ["--stereo", "layers", "--reference", "a.png"]]:
             self.isorast("render", "sphere:8", *words, code=2)
 
     def test_missing_values(self):
@@ -284,6 +289,31 @@ class Render(CommandLine):
             self.render("marschner-lobb:24", *words, "-o", f"{number}.png")
             pictures.add(self.read(f"{number}.png"))
         self.assertEqual(len(pictures), len(views))
+
+    def test_stereo(self):
+        self.render("torus:24", "-o", "both.png", "--stereo", "side-by-side")
+        self.assertEqual(size_of(self.read("both.png")), (192, 64))
+        self.render("torus:24", "-o", "eyes.png", "--stereo", "layers", "--eye-separation", "0.3", "--convergence", "4")
+        self.assertNotEqual(self.read("eyes.left.png"), self.read("eyes.right.png"))
+        self.render("torus:24", "-o", "glasses.png", "--stereo", "anaglyph")
+        self.assertEqual(size_of(self.read("glasses.png")), (96, 64))
+
+    def test_clip_planes(self):
+        self.render("sphere:17", "-o", "whole.png")
+        # The middle of 17 voxels over [-1, 1] in each of the ways to say so.
+        for number, words in enumerate([["--clip", "y>0"], ["--clip", "j>8"], ["--clip", "y>50%"], ["--clip", "j>50%"]]):
+            self.render("sphere:17", *words, "-o", f"{number}.png")
+            self.isorast("compare", f"{number}.png", "0.png", "--tolerance", "1")
+        self.isorast("compare", "0.png", "whole.png", code=1)
+        self.render("sphere:17", "--clip", "y>0", "--clip", "x<0.2,z<0.2", "-o", "three.png")
+        self.isorast("compare", "0.png", "three.png", code=1)
+
+    def test_culling_changes_no_pixel(self):
+        for word in ["off", "hiz", "auto"]:
+            found = json.loads(self.render("gyroid:40", "--culling", word, "--json", "-o", f"{word}.png")[0])
+            if word == "hiz" or word == "off":
+                self.assertEqual(found["culling"], word)
+            self.isorast("compare", f"{word}.png", "off.png")
 
     def test_reference(self):
         self.render("sphere:16", "-o", "good.png")

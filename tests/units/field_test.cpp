@@ -20,7 +20,7 @@ const std::array<std::string, 6> NAMES{"sphere",         "torus", "gyroid",
                                        "marschner-lobb", "noise", "coral"};
 
 float value_of(Kind kind, double x, double y, double z) {
-    return field::field_value(uint32_t(kind), 6, 1, float(x), float(y), float(z));
+    return field::field_value({}, uint32_t(kind), 6, 1, float(x), float(y), float(z));
 }
 
 TEST(Field, SineAndCosineAreExactTo2e7) {
@@ -77,9 +77,9 @@ TEST(Field, NoiseIsContinuousAndDependsOnItsSeedAndOctaves) {
     for (double x = -1; x < 1; x += 0.001)
         EXPECT_NEAR(value_of(Kind::noise, x, 0.3, -0.2), value_of(Kind::noise, x + 1e-5, 0.3, -0.2),
                     2e-3);
-    float a = field::field_value(field::FIELD_NOISE, 6, 1, 0.1f, 0.2f, 0.3f);
-    EXPECT_NE(a, field::field_value(field::FIELD_NOISE, 6, 2, 0.1f, 0.2f, 0.3f));
-    EXPECT_NE(a, field::field_value(field::FIELD_NOISE, 5, 1, 0.1f, 0.2f, 0.3f));
+    float a = field::field_value({}, field::FIELD_NOISE, 6, 1, 0.1f, 0.2f, 0.3f);
+    EXPECT_NE(a, field::field_value({}, field::FIELD_NOISE, 6, 2, 0.1f, 0.2f, 0.3f));
+    EXPECT_NE(a, field::field_value({}, field::FIELD_NOISE, 5, 1, 0.1f, 0.2f, 0.3f));
 }
 
 TEST(Field, SamplesLieInTheWorldWhereTheAffineSays) {

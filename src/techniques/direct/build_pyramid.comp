@@ -1,26 +1,26 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 64x64 pixels. Thread: 4x4 of them. Out: the farthest depth (least: depth is reversed)
+// Workgroup: 64x64 pixels of one eye. Thread: 4x4 of them. Out: the farthest depth (least: depth is reversed)
 // of squares of 2 to 64 pixels.
 #include "shaders/scene.glsl"
 #include "techniques/direct/pyramid.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
 
-layout(set = 1, binding = 0) uniform texture2D depth;
+layout(set = 1, binding = 0) uniform texture2DArray depth;
 layout(set = 1, binding = 1, std430) writeonly buffer Pyramid { float pyramid[]; };
 
 shared float farthest[16][16];
 
 // Pixels outside the picture hide nothing and show nothing: as near as can be.
 float depth_at(uvec2 pixel) {
-    return all(lessThan(pixel, frame.size.xy)) ? texelFetch(depth, ivec2(pixel), 0).r : 1.0;
+    return all(lessThan(pixel, frame.size.xy)) ? texelFetch(depth, ivec3(pixel, gl_GlobalInvocationID.z), 0).r : 1.0;
 }
 
 void store(uint level, uvec2 square, float value) {
     const uvec2 size = pyramid_size(level);
     if (all(lessThan(square, size)))
-        pyramid[pyramid_offset(level) + square.x + size.x * square.y] = value;
+        pyramid[pyramid_offset(gl_GlobalInvocationID.z, level) + square.x + size.x * square.y] = value;
 }
 
 void main() {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "build_pyramid_comp.h"
 #include "cull_comp.h"
 #include "find_active_comp.h"
 #include "find_first_visible_comp.h"
@@ -33,18 +32,10 @@ glm::dvec3 to_vec(const std::array<double, 3>& v) {
     return {v[0], v[1], v[2]};
 }
 
-uint64_t pyramid_bytes(Size size) {
-    uint64_t squares = 0;
-    for (uint32_t level = 1; level <= 6; ++level) {
-        const uint32_t side = 1u << level;
-        squares += uint64_t{(size.width + side - 1) / side} * ((size.height + side - 1) / side);
-    }
-    return sizeof(float) * squares;
-}
-
 }  // namespace
 
-Culling::Culling(const Grid& grid, uint32_t workgroups) : grid_(grid) {
+Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups)
+    : grid_(grid), occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
     chunks_ = (groups + shared::CHUNK_GROUPS - 1) / shared::CHUNK_GROUPS;
@@ -67,10 +58,9 @@ Culling::Culling(const Grid& grid, uint32_t workgroups) : grid_(grid) {
     };
     find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
     const std::vector lists(6, Kind::buffer);
+    const uint32_t unseen = occlusion_->kind() == Occlusion::hiz ? 2 : 3;  // UNSEEN, TESTED
     for (uint32_t which = 0; which < select_.size(); ++which)
-        select_[which] = make("cull", lists, 0, {which}, cull_comp);
-    build_pyramid_ =
-        make("depth pyramid", {Kind::texture, Kind::buffer}, 0, {}, build_pyramid_comp);
+        select_[which] = make("cull", lists, 0, {which < 2 ? which : unseen}, cull_comp);
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     if (grid.info().blocks.w >= WORTH_GUESSING)
         find_first_visible_ =
@@ -79,8 +69,8 @@ Culling::Culling(const Grid& grid, uint32_t workgroups) : grid_(grid) {
 }
 
 uint64_t Culling::gpu_bytes() const {
-    uint64_t bytes =
-        drawn_blocks_.bytes() + 2 * draws_.bytes() + counters_.bytes() + 2 * visible_[0].bytes();
+    uint64_t bytes = occlusion_->gpu_bytes() + drawn_blocks_.bytes() + 2 * draws_.bytes() +
+                     counters_.bytes() + 2 * visible_[0].bytes();
     for (const auto& list : active_groups_)
         bytes += list.bytes();
     return bytes;
@@ -88,12 +78,12 @@ uint64_t Culling::gpu_bytes() const {
 
 void Culling::find_active(Commands& commands, const std::vector<float>& isovalues) {
     const auto pass = commands.pass("find active");
-    const uint64_t list_bytes = 16 + uint64_t{8} * grid_.info().groups.w;
+    const uint64_t list_bytes = 32 + uint64_t{8} * grid_.info().groups.w;
     while (active_groups_.size() < isovalues.size())
         active_groups_.emplace_back(grid_.device(), list_bytes, Memory::device,
                                     "the list of active blocks");
     commands.fill(counters_, 0);
-    const std::array<uint32_t, 4> empty{0, 1, 1, 0};  // dispatch arguments and count
+    const std::array<uint32_t, 8> empty{0, 1, 1, 0, 0, 0, 1, 0};  // as in list.glsl
     for (uint32_t i = 0; i < isovalues.size(); ++i)
         commands.update(active_groups_[i], 0, empty.data(), sizeof(empty));
     commands.barrier();
@@ -132,9 +122,7 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     seen_ = 1 - seen_;
     target.visible_blocks = &visible_[1 - seen_];
     commands.fill(visible_[1 - seen_], 0);
-    if (pyramid_.bytes() != pyramid_bytes(frame.size))
-        pyramid_ = gpu::Buffer(grid_.device(), pyramid_bytes(frame.size), Memory::device,
-                               "the depth pyramid");
+    occlusion_->fit(target);
     const bool cut = is_cut(frame.camera);
     last_camera_ = frame.camera;
     if (cut) {
@@ -144,7 +132,8 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     if (cut && find_first_visible_) {
         const auto pass = commands.pass("find first visible");
         commands.bind(find_first_visible_, {visible_[seen_]});
-        commands.dispatch((frame.size.width + 31) / 32, (frame.size.height + 31) / 32);
+        commands.dispatch((frame.size.width + 31) / 32, (frame.size.height + 31) / 32,
+                          frame.eyes());
     }
     commands.barrier();
 }
@@ -154,15 +143,8 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
     commands.barrier();
     commands.bind(select_[size_t(which)],
                   {active_groups_[surface], draws_, drawn_blocks_, counters_, visible_[seen_],
-                   pyramid_ ? gpu::Binding(pyramid_) : counters_});
+                   which == Select::unseen ? gpu::Binding(occlusion_->result()) : counters_});
     commands.dispatch_indirect(active_groups_[surface], 0);
-    commands.barrier();
-}
-
-void Culling::build_pyramid(Commands& commands, const Target& target) {
-    const auto pass = commands.pass("depth pyramid");
-    commands.bind(build_pyramid_, {target.depth, pyramid_});
-    commands.dispatch((target.size.width + 63) / 64, (target.size.height + 63) / 64);
     commands.barrier();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which blocks to extract: those that the isovalue crosses, in the frustum, and not hidden behind
-// others (Kreskowski 2022, section 3.5). All on the GPU, all in compute, for any rasterizer.
+// others (Kreskowski 2022, section 3.5). All on the GPU; all in compute, for any rasterizer, but
+// for the occlusion test by raster proxies.
 #pragma once
 #include <array>
 #include <optional>
@@ -8,13 +9,14 @@
 #include "gpu/commands.h"
 #include "grid/grid.h"
 #include "image/target.h"
+#include "techniques/direct/occlusion.h"
 
 namespace isorast {
 
 class Culling {
 public:
     // `workgroups`: how many draw a block, the y of draws().
-    Culling(const Grid& grid, uint32_t workgroups);
+    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups);
 
     // The active groups of each surface: once an isovalue.
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
@@ -24,10 +26,14 @@ public:
     // frame's in target.visible_blocks.
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
     enum class Select : uint32_t { all, seen, unseen };
+    // Before select(unseen): looks at the depth drawn so far, once; and tests a surface's blocks.
+    void look(gpu::Commands& commands, const Target& target) { occlusion_->look(commands, target); }
+    void test(gpu::Commands& commands, uint32_t surface, const Target& target) {
+        occlusion_->test(commands, active_groups_[surface], visible_[seen_], target);
+    }
     // Lists a surface's blocks in drawn_blocks() and counts them in draws().
     void select(gpu::Commands& commands, uint32_t surface, Select which);
-    // What select(unseen) tests against: from the depth drawn so far.
-    void build_pyramid(gpu::Commands& commands, const Target& target);
+    Occlusion occlusion() const { return occlusion_->kind(); }
 
     // A chunk is 32768 blocks: entry e of chunk c, a block's 16-bit place in the chunk, is at
     // [c * 32768 + e].
@@ -44,14 +50,14 @@ private:
 
     const Grid& grid_;
     uint32_t chunks_ = 0;
-    gpu::Pipeline find_active_, find_first_visible_, build_pyramid_;
+    std::unique_ptr<OcclusionTest> occlusion_;
+    gpu::Pipeline find_active_, find_first_visible_;
     std::array<gpu::Pipeline, 3> select_;     // one for each Select
     std::vector<gpu::Buffer> active_groups_;  // one for each surface
     gpu::Buffer drawn_blocks_, draws_, empty_draws_, counters_;
     std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
     uint32_t seen_ = 0;                   // which of the two is last frame's
     std::optional<Camera> last_camera_;   // of the frame that marked visible blocks
-    gpu::Buffer pyramid_;
 };
 
 }  // namespace isorast

@@ -7,7 +7,6 @@
 
 #include <array>
 
-#include "gpu/device.h"
 #include "shaders/marching_cubes.h"
 #include "techniques/direct/culling.h"
 #include "techniques/direct/rasterizer.h"
@@ -34,6 +33,7 @@ public:
 
     Rasterizer rasterizer() const override { return kind_; }
     bool can_shade_forward() const override { return kind_ == Rasterizer::hardware; }
+    Occlusion occlusion() const override { return culling_.occlusion(); }
     void prepare(Commands& commands, const std::vector<float>& isovalues) override {
         culling_.find_active(commands, isovalues);
     }
@@ -47,23 +47,27 @@ private:
     void draw(Commands& commands, const Frame& frame, const Target& target, Culling::Select which);
 
     Rasterizer kind_;
-    Culling culling_;
     gpu::Buffer cases_;  // marching cubes: 256 x uvec2
-    std::unique_ptr<DirectRasterizer> rasterizer_;
+    std::unique_ptr<BlockRasterizer> rasterizer_;
+    Culling culling_;
 };
 
-// A workgroup a block in compute; the paper's task shader takes half a block.
-uint32_t workgroups_per_block(Rasterizer rasterizer) {
-    return rasterizer == Rasterizer::compute ? 1 : 2;
+std::unique_ptr<OcclusionTest> make_occlusion_test(const TechniqueContext& context) {
+    if (context.options.occlusion == Occlusion::raster &&
+        context.options.rasterizer == Rasterizer::compute)
+        throw Error("direct: raster proxies need the hardware rasterizer; use --culling hiz");
+    return context.options.occlusion == Occlusion::raster ? make_raster_proxies(context.grid)
+                                                          : make_depth_pyramid(context.grid);
 }
 
 Direct::Direct(const TechniqueContext& context)
     : kind_(context.options.rasterizer),
-      culling_(context.grid, workgroups_per_block(context.options.rasterizer)),
-      cases_(upload_cases(context.grid.device())) {
+      cases_(upload_cases(context.grid.device())),
+      rasterizer_(kind_ == Rasterizer::compute ? make_compute_rasterizer(context.grid, cases_)
+                                               : make_hardware_rasterizer(context.grid, cases_)),
+      // A workgroup for each block; the paper's task shader takes half a block.
+      culling_(context.grid, make_occlusion_test(context), kind_ == Rasterizer::compute ? 1 : 2) {
     if (context.options.exact) throw Error("direct: has no exact way; use --technique raymarch");
-    rasterizer_ = kind_ == Rasterizer::compute ? make_compute(context.grid, cases_)
-                                               : make_hardware(context.grid, cases_);
 }
 
 void Direct::record(Commands& commands, const Frame& frame, Target& target) {
@@ -74,7 +78,7 @@ void Direct::record(Commands& commands, const Frame& frame, Target& target) {
     }
     if (!frame.culling) return draw(commands, frame, target, Culling::Select::all);
     draw(commands, frame, target, Culling::Select::seen);
-    culling_.build_pyramid(commands, target);
+    culling_.look(commands, target);
     draw(commands, frame, target, Culling::Select::unseen);
 }
 
@@ -84,12 +88,13 @@ void Direct::draw(Commands& commands, const Frame& frame, const Target& target,
     constexpr std::array CULL{"list blocks", "cull seen", "cull unseen"};
     constexpr std::array EXTRACT{"extract", "extract seen", "extract unseen"};
     for (uint32_t surface = 0; surface < frame.isovalues.size(); ++surface) {
+        if (which == Culling::Select::unseen) culling_.test(commands, surface, target);
         {
             const auto pass = commands.pass(CULL[size_t(which)]);
             culling_.select(commands, surface, which);
         }
         const auto pass = commands.pass(EXTRACT[size_t(which)]);
-        rasterizer_->draw(commands, frame, surface, culling_, target);
+        rasterizer_->extract(commands, culling_, surface, frame, target);
     }
 }
 

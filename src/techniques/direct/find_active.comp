@@ -4,15 +4,11 @@
 // isovalue crosses, each with a mask of such blocks (Kreskowski 2022, section 3.5.1, once an
 // isovalue).
 #include "shaders/scene.glsl"
+#define ACTIVE_GROUPS_ACCESS
 #include "techniques/direct/list.glsl"
 
 layout(local_size_x = 128) in;
 
-layout(set = 1, binding = 0, std430) buffer ActiveGroups {
-    uint dispatch_x, dispatch_y, dispatch_z;  // arguments of the cull pass
-    uint group_count;
-    uvec2 active_groups[];  // group, mask
-};
 layout(set = 1, binding = 1, std430) buffer CounterBlock { Counters counters; };
 layout(push_constant) uniform Push {
     float iso;
@@ -35,6 +31,11 @@ void main() {
     if (place != 0 || masks[local_group] == 0) return;
     const uint slot = atomicAdd(group_count, 1);
     active_groups[slot] = uvec2(group, masks[local_group]);
-    if (slot < MAX_LIST_GROUPS) atomicAdd(dispatch_x, 1);
+    if (slot < MAX_LIST_GROUPS) atomicAdd(cull_x, 1);
+    if (slot % TASK_GROUPS == 0) {
+        const uint task = slot / TASK_GROUPS;
+        if (task < TASK_ROW) atomicAdd(task_x, 1);
+        if (task % TASK_ROW == 0) atomicAdd(task_y, 1);
+    }
     atomicAdd(counters.blocks_active, bitCount(masks[local_group]));
 }

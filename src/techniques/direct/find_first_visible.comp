@@ -15,11 +15,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 void main() {
     const uvec2 pixel = 4 * gl_GlobalInvocationID.xy + 2;
     if (any(greaterThanEqual(pixel, frame.size.xy))) return;
-    const Ray ray = pixel_ray(vec2(pixel));
-    float nearest = uintBitsToFloat(0x7f800000u);  // infinity
-    for (uint i = 0; i < frame.size.z; ++i) {
-        float t;
-        if (first_hit(ray, frame.surfaces[i].w, t)) nearest = min(nearest, t);
-    }
-    if (!isinf(nearest)) mark_visible(cell_of(ray.origin + nearest * ray.direction));
+    const Ray ray = pixel_ray(gl_GlobalInvocationID.z, vec2(pixel));
+    float t;
+    uint number;
+    if (nearest_hit(ray, t, number)) mark_visible(cell_of(ray.origin + t * ray.direction));
 }

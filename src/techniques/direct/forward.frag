@@ -1,10 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+// variant forward_stereo_frag: -DSTEREO
 // Thread: one fragment. Out: its colour, from the mesh shader's normals: the paper's own way to
 // shade (Kreskowski 2022, section 4, "Shading").
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/shading.glsl"
+#include "techniques/direct/fragment.glsl"
 
 layout(location = 0) in vec3 position;  // voxel space
 layout(location = 1) in vec3 gradient;
@@ -12,9 +14,8 @@ layout(location = 0) out vec4 color;
 layout(push_constant) uniform Push { uint chunk, surface; };
 
 void main() {
-    const vec2 ndc = 2.0 * gl_FragCoord.xy / vec2(frame.size.xy) - 1.0;
-    const vec3 direction = frame.ray_direction.xyz + ndc.x * frame.ray_direction_x.xyz +
-                           ndc.y * frame.ray_direction_y.xyz;
+    clip_fragment();
+    const vec3 direction = pixel_ray(eye, gl_FragCoord.xy).direction;
     const bool outward = dot(gradient, direction) > 0.0;
     color = vec4(gooch(frame.surfaces[surface].rgb, world_normal(gradient, direction, outward),
                        world_direction(direction)), 1.0);

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Blocks to triangles by task and mesh shaders, rasterized by the device (Kreskowski 2022, section
-// 3.4).
+// The hardware rasterizer: task and mesh shaders extract the listed blocks' triangles and hand them
+// to the graphics pipeline (Kreskowski 2022, section 3.4).
 #include <fmt/format.h>
 #include <isorast/error.h>
 
 #include <array>
 
+#include "clip_frag.h"
+#include "clip_stereo_frag.h"
 #include "extract_forward_mesh.h"
+#include "extract_forward_stereo_mesh.h"
 #include "extract_mesh.h"
+#include "extract_stereo_mesh.h"
 #include "extract_task.h"
 #include "forward_frag.h"
+#include "forward_stereo_frag.h"
 #include "gpu/device.h"
 #include "surface_number_frag.h"
+#include "surface_number_stereo_frag.h"
 #include "techniques/direct/rasterizer.h"
 
 namespace isorast {
@@ -21,29 +27,54 @@ namespace {
 using gpu::Commands;
 using gpu::Kind;
 
-class Hardware final : public DirectRasterizer {
-public:
-    Hardware(const Grid& grid, const gpu::Buffer& cases);
+struct DrawPush {
+    uint32_t chunk, surface;
+};
 
-    void clear(Commands& commands, const Frame& frame, const Target& target) override;
-    void draw(Commands& commands, const Frame& frame, uint32_t surface, const Culling& culling,
-              const Target& target) override;
+// What a picture is drawn into beside depth.
+enum class Colors : uint8_t { none, numbers, shaded };
+
+Colors colors_of(const Frame& frame) {
+    if (frame.shading == Shading::forward) return Colors::shaded;
+    return frame.isovalues.size() > 1 ? Colors::numbers : Colors::none;
+}
+
+std::vector<const gpu::Texture*> color_targets(const Frame& frame, const Target& target) {
+    switch (colors_of(frame)) {
+        case Colors::shaded:
+            return {&target.color};
+        case Colors::numbers:
+            return {&target.surfaces};
+        case Colors::none:
+            break;
+    }
+    return {};
+}
+
+std::vector<VkFormat> color_formats(Colors colors) {
+    if (colors == Colors::none) return {};
+    return {colors == Colors::shaded ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32_UINT};
+}
+
+class HardwareRasterizer final : public BlockRasterizer {
+public:
+    HardwareRasterizer(const Grid& grid, const gpu::Buffer& cases);
+
+    void clear(Commands& commands, const Frame& frame, const Target& target) const override;
+    void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
+                 const Target& target) override;
 
 private:
-    struct Push {
-        uint32_t chunk, surface;
-    };
-    // Beside depth.
-    enum class Draws : uint8_t { depth, numbers, colors };
-    const gpu::Pipeline& pipeline(Draws draws);
+    const gpu::Pipeline& pipeline(const Frame& frame);
 
     const Grid& grid_;
     const gpu::Buffer& cases_;
-    std::array<gpu::Pipeline, 3> pipelines_;  // made when first needed
+    std::array<gpu::Pipeline, 12> pipelines_;  // made when first needed
 };
 
-Hardware::Hardware(const Grid& grid, const gpu::Buffer& cases) : grid_(grid), cases_(cases) {
-    const gpu::Device& device = grid.device();
+HardwareRasterizer::HardwareRasterizer(const Grid& grid, const gpu::Buffer& cases)
+    : grid_(grid), cases_(cases) {
+    const gpu::Device& device = grid_.device();
     if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
         throw Error(fmt::format(
             "direct: {} cannot run its hardware rasterizer: {}; use --rasterizer compute",
@@ -52,40 +83,36 @@ Hardware::Hardware(const Grid& grid, const gpu::Buffer& cases) : grid_(grid), ca
                                                    : device.info().why_not_hardware));
 }
 
-const gpu::Pipeline& Hardware::pipeline(Draws draws) {
-    gpu::Pipeline& pipeline = pipelines_[size_t(draws)];
+const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
+    const Colors colors = colors_of(frame);
+    const bool stereo = frame.eyes() > 1, clipped = !frame.clips.empty();
+    gpu::Pipeline& pipeline = pipelines_[size_t(colors) + 3 * stereo + 6 * clipped];
     if (pipeline) return pipeline;
-    const auto info =
-        grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer}, sizeof(Push));
+
+    using Code = std::span<const uint32_t>;
+    const bool forward = colors == Colors::shaded;
+    const Code mono_mesh = forward ? grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked)
+                                   : grid_.pick(extract_mesh, extract_mesh_bricked);
+    const Code stereo_mesh =
+        forward ? grid_.pick(extract_forward_stereo_mesh, extract_forward_stereo_mesh_bricked)
+                : grid_.pick(extract_stereo_mesh, extract_stereo_mesh_bricked);
+    const std::array<Code, 3> fragment{clip_frag, surface_number_frag, forward_frag};
+    const std::array<Code, 3> stereo_fragment{clip_stereo_frag, surface_number_stereo_frag,
+                                              forward_stereo_frag};
     std::vector<gpu::Shader> shaders{
-        {VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)}};
-    gpu::Attachments attachments{{}, VK_FORMAT_D32_SFLOAT};
-    if (draws == Draws::colors)
-        shaders.push_back({VK_SHADER_STAGE_MESH_BIT_EXT,
-                           grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked)});
-    else
+        {VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)},
+        {VK_SHADER_STAGE_MESH_BIT_EXT, stereo ? stereo_mesh : mono_mesh}};
+    if (colors != Colors::none || clipped)
         shaders.push_back(
-            {VK_SHADER_STAGE_MESH_BIT_EXT, grid_.pick(extract_mesh, extract_mesh_bricked)});
-    if (draws == Draws::colors) {
-        shaders.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, forward_frag});
-        attachments.colors = {VK_FORMAT_R8G8B8A8_UNORM};
-    }
-    if (draws == Draws::numbers) {
-        shaders.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, surface_number_frag});
-        attachments.colors = {VK_FORMAT_R32_UINT};
-    }
-    pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders, attachments);
+            {VK_SHADER_STAGE_FRAGMENT_BIT, (stereo ? stereo_fragment : fragment)[size_t(colors)]});
+    const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer},
+                                          sizeof(DrawPush), {clipped});
+    pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders,
+                                       {color_formats(colors), VK_FORMAT_D32_SFLOAT});
     return pipeline;
 }
 
-// What a picture is drawn into beside depth: colours, the surfaces' numbers, or nothing.
-std::vector<const gpu::Texture*> color_targets(const Frame& frame, const Target& target) {
-    if (frame.shading == Shading::forward) return {&target.color};
-    if (frame.isovalues.size() > 1) return {&target.surfaces};
-    return {};
-}
-
-void Hardware::clear(Commands& commands, const Frame& frame, const Target& target) {
+void HardwareRasterizer::clear(Commands& commands, const Frame& frame, const Target& target) const {
     const Color& b = frame.background;
     VkClearColorValue color{};
     if (frame.shading == Shading::forward) color = {{b.r, b.g, b.b, b.a}};
@@ -94,15 +121,12 @@ void Hardware::clear(Commands& commands, const Frame& frame, const Target& targe
     commands.barrier();
 }
 
-void Hardware::draw(Commands& commands, const Frame& frame, uint32_t surface,
-                    const Culling& culling, const Target& target) {
-    const Draws draws = frame.shading == Shading::forward ? Draws::colors
-                        : frame.isovalues.size() > 1      ? Draws::numbers
-                                                          : Draws::depth;
+void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uint32_t surface,
+                                 const Frame& frame, const Target& target) {
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
-    commands.bind(pipeline(draws), {culling.drawn_blocks(), cases_});
+    commands.bind(pipeline(frame), {culling.drawn_blocks(), cases_});
     for (uint32_t chunk = 0; chunk < culling.chunks(); ++chunk) {
-        commands.push(Push{chunk, surface});
+        commands.push(DrawPush{chunk, surface});
         commands.draw_mesh_tasks_indirect(culling.draws(),
                                           chunk * sizeof(VkDrawMeshTasksIndirectCommandEXT));
     }
@@ -112,8 +136,9 @@ void Hardware::draw(Commands& commands, const Frame& frame, uint32_t surface,
 
 }  // namespace
 
-std::unique_ptr<DirectRasterizer> make_hardware(const Grid& grid, const gpu::Buffer& cases) {
-    return std::make_unique<Hardware>(grid, cases);
+std::unique_ptr<BlockRasterizer> make_hardware_rasterizer(const Grid& grid,
+                                                          const gpu::Buffer& cases) {
+    return std::make_unique<HardwareRasterizer>(grid, cases);
 }
 
 }  // namespace isorast

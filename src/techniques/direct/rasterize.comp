@@ -8,6 +8,7 @@
 // rasterization in one compute shader: no mesh shaders, no graphics queue.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
+#include "shaders/ray.glsl"
 #include "techniques/direct/list.glsl"
 
 const uint THREADS = 128;
@@ -16,24 +17,29 @@ layout(local_size_x = THREADS) in;
 layout(set = 1, binding = 0, std430) readonly buffer DrawnBlocks { uint16_t drawn_blocks[]; };
 layout(set = 1, binding = 1, std430) readonly buffer Cases { uvec2 cases[]; };
 // Depth as the bits of floats: of numbers that are not negative, the order is the same.
-layout(set = 1, binding = 2, r32ui) uniform uimage2D depth_bits;
-layout(set = 1, binding = 3, r32ui) writeonly uniform uimage2D surface_numbers;
+layout(set = 1, binding = 2, r32ui) uniform uimage2DArray depth_bits;
+layout(set = 1, binding = 3, r32ui) writeonly uniform uimage2DArray surface_numbers;
+layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 layout(push_constant) uniform Push { uint chunk, surface; };
+
+uint eye = 0;  // that all threads draw for
 
 #include "techniques/direct/cell_rows.glsl"
 
 // Every pixel of every triangle goes through here.
 void write_pixel(ivec2 pixel, float depth, bool front) {
+    if (CLIPPED && !is_kept(eye, vec2(pixel) + 0.5, depth)) return;
+    const ivec3 place = ivec3(pixel, eye);
 #if defined(COUNTING)
     // A test's: front faces less back faces; 0 everywhere if the surface is closed.
-    imageAtomicAdd(depth_bits, pixel, front ? 1u : ~0u);
+    imageAtomicAdd(depth_bits, place, front ? 1u : ~0u);
 #elif defined(NUMBERED)
     // All that a dispatch draws has the same number: whoever raises the depth may write it.
     const uint bits = floatBitsToUint(depth);
-    if (imageAtomicMax(depth_bits, pixel, bits) < bits)
-        imageStore(surface_numbers, pixel, uvec4(surface));
+    if (imageAtomicMax(depth_bits, place, bits) < bits)
+        imageStore(surface_numbers, place, uvec4(surface));
 #else
-    imageAtomicMax(depth_bits, pixel, floatBitsToUint(depth));
+    imageAtomicMax(depth_bits, place, floatBitsToUint(depth));
 #endif
 }
 
@@ -119,7 +125,7 @@ vec4 project(uint edge, uvec3 first, float iso) {
     const uint axis = edge_axis(edge), at = corner.x + 9 * (edge >> 5);
     const float lower = values[at], upper = values[at + (axis == 0 ? 1 : axis == 1 ? 9 : 81)];
     precise const vec4 clip =
-        frame.clip_from_voxel * vec4(crossing(first + corner, axis, lower, upper, iso), 1.0);
+        frame.eyes[eye].clip_from_voxel * vec4(crossing(first + corner, axis, lower, upper, iso), 1.0);
     return clip;
 }
 
@@ -161,7 +167,9 @@ uvec3 vertex_on(uint edge) {
 // Each thread its own triangles; large ones are marked and left.
 void rasterize_alone() {
     for (uint i = gl_LocalInvocationIndex; i < triangle_total; i += THREADS) {
-        const uvec3 on = edges_of(triangles[i]);
+        if (eye > 0) triangles[i] &= ~LARGE;
+        const uint triangle = triangles[i];
+        const uvec3 on = edges_of(triangle);
         const uvec3 a = vertex_on(on.x), b = vertex_on(on.y), c = vertex_on(on.z);
         bool large = a.z == UNCLIPPED || b.z == UNCLIPPED || c.z == UNCLIPPED;
         Triangle t;
@@ -220,12 +228,20 @@ void main() {
             barrier();
             continue;
         }
-        project_vertices(first, iso);
-        barrier();
-        rasterize_alone();
-        barrier();
-        if (large_total != 0) rasterize_together(first, iso);
-        barrier();
+        for (eye = 0; eye < frame.counts.x; ++eye) {
+            if (eye > 0) {
+                if (thread == 0) vertex_total = large_total = 0;
+                barrier();
+                if (thread < ROWS) list_vertices(thread, layer, layers, left);
+                barrier();
+            }
+            project_vertices(first, iso);
+            barrier();
+            rasterize_alone();
+            barrier();
+            if (large_total != 0) rasterize_together(first, iso);
+            barrier();
+        }
         layer += layers;
     }
 }

@@ -1,6 +1,15 @@
 #version 460
+#extension GL_GOOGLE_include_directive : require
+// variant surface_number_stereo_frag: -DSTEREO
 // Thread: one fragment. Out: the number of its surface; only drawn where there are several
 // surfaces.
+#include "shaders/scene.glsl"
+#include "techniques/direct/fragment.glsl"
+
 layout(location = 0) out uint surface_number;
 layout(push_constant) uniform Push { uint chunk, surface; };
-void main() { surface_number = surface; }
+
+void main() {
+    clip_fragment();
+    surface_number = surface;
+}

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 8x8 pixels. Thread: one ray. Out: the depth of the first hit, and the number of its
+// Workgroup: 8x8 pixels of one eye. Thread: one ray. Out: the depth of the first hit, and the number of its
 // surface.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
@@ -10,24 +10,16 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 1, binding = 0, r32f) uniform image2D depth;
-layout(set = 1, binding = 1, r32ui) writeonly uniform uimage2D surface_numbers;
+layout(set = 1, binding = 0, r32f) writeonly uniform image2DArray depth;
+layout(set = 1, binding = 1, r32ui) writeonly uniform uimage2DArray surface_numbers;
 
 void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(frame.size.xy)))) return;
-    const Ray ray = pixel_ray(vec2(pixel) + 0.5);
-    float nearest = 0.0;
-    uint number = 0;
-    for (uint i = 0; i < frame.size.z; ++i) {
-        float t;
-        if (!first_hit(ray, frame.surfaces[i].w, t)) continue;
-        const float z = clamp(reversed_depth(t), 1e-38, 1.0);
-        if (z > nearest) {
-            nearest = z;
-            number = i;
-        }
-    }
-    imageStore(depth, pixel, vec4(nearest));
+    const ivec3 pixel = ivec3(gl_GlobalInvocationID);  // z: the eye
+    if (any(greaterThanEqual(pixel.xy, ivec2(frame.size.xy)))) return;
+    float t;
+    uint number;
+    const bool found = nearest_hit(pixel_ray(pixel.z, vec2(pixel.xy) + 0.5), t, number);
+    const float z = found ? clamp(reversed_depth(t), 1e-38, 1.0) : 0.0;
+    imageStore(depth, pixel, vec4(z));
     if (frame.size.z > 1) imageStore(surface_numbers, pixel, uvec4(number));
 }

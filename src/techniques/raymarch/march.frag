@@ -13,20 +13,14 @@
 layout(location = 0) out uint surface_number;
 #endif
 
+layout(push_constant) uniform Push { uint eye; };
+
 void main() {
-    const Ray ray = pixel_ray(gl_FragCoord.xy);
-    float nearest = 0.0;
-    for (uint i = 0; i < frame.size.z; ++i) {
-        float t;
-        if (!first_hit(ray, frame.surfaces[i].w, t)) continue;
-        const float z = clamp(reversed_depth(t), 1e-38, 1.0);
-        if (z > nearest) {
-            nearest = z;
+    float t;
+    uint number;
+    if (!nearest_hit(pixel_ray(eye, gl_FragCoord.xy), t, number)) discard;
 #ifdef NUMBERED
-            surface_number = i;
+    surface_number = number;
 #endif
-        }
-    }
-    if (nearest == 0.0) discard;
-    gl_FragDepth = nearest;
+    gl_FragDepth = clamp(reversed_depth(t), 1e-38, 1.0);
 }

@@ -49,7 +49,7 @@ Raymarch::Raymarch(const TechniqueContext& context) {
             fmt::format("raymarch: {} has no graphics queue with dynamic rendering; use "
                         "--rasterizer compute",
                         device.info().name));
-    const auto info = context.grid.pipeline_info("march", {}, 0, constants);
+    const auto info = context.grid.pipeline_info("march", {}, sizeof(uint32_t), constants);
     const gpu::Shader vertex{VK_SHADER_STAGE_VERTEX_BIT, whole_picture_vert};
     const VkFormat depth = VK_FORMAT_D32_SFLOAT;
     march_ = gpu::Pipeline::graphics(
@@ -68,15 +68,18 @@ void Raymarch::record(gpu::Commands& commands, const Frame& frame, Target& targe
     const auto pass = commands.pass("march");
     if (!hardware_) {
         commands.bind(march_, {target.depth, target.surfaces});
-        commands.dispatch((target.size.width + 7) / 8, (target.size.height + 7) / 8);
+        commands.dispatch((target.size.width + 7) / 8, (target.size.height + 7) / 8, target.eyes);
     } else {
         const bool numbered = frame.isovalues.size() > 1;
         std::vector<const gpu::Texture*> colors;
         if (numbered) colors = {&target.surfaces};
-        commands.begin_rendering(colors, &target.depth, /* clear= */ true);
-        commands.bind(numbered ? march_numbered_ : march_, {});
-        commands.draw(3);
-        commands.end_rendering();
+        for (uint32_t eye = 0; eye < target.eyes; ++eye) {
+            commands.begin_rendering(colors, &target.depth, /* clear= */ true, {}, eye);
+            commands.bind(numbered ? march_numbered_ : march_, {});
+            commands.push(eye);
+            commands.draw(3);
+            commands.end_rendering();
+        }
     }
     commands.barrier();
 }

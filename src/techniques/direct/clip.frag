@@ -1,0 +1,9 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// variant clip_stereo_frag: -DSTEREO
+// Thread: one fragment. Out: its depth, unless a clip plane cuts it off; only drawn where there are
+// clip planes.
+#include "shaders/scene.glsl"
+#include "techniques/direct/fragment.glsl"
+
+void main() { clip_fragment(); }
