@@ -125,8 +125,8 @@ void Texture::swap(Texture& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(image_, other.image_);
     std::swap(view_, other.view_);
-    std::swap(layer_views_, other.layer_views_);
     std::swap(bits_view_, other.bits_view_);
+    std::swap(layer_views_, other.layer_views_);
     std::swap(memory_, other.memory_);
     std::swap(info_, other.info_);
     std::swap(bytes_, other.bytes_);

@@ -54,8 +54,7 @@ struct ImageInfo {
     bool is_3d = false;
     uint32_t layers = 1;    // of a 2D image, which is an array to all shaders; at most 2
     bool uploaded = false;  // written on the upload queue too
-    // Its texels can be seen as R32_UINT too, for atomics: formats of 32 bits.
-    bool as_bits = false;
+    bool as_bits = false;   // 32-bit texels that can be seen as R32_UINT too, for atomics
 };
 
 class Texture {
@@ -74,7 +73,7 @@ public:
 
     VkImage handle() const { return image_; }
     VkImageView view() const { return view_; }            // of a volume, or an array of all layers
-    VkImageView bits_view() const { return bits_view_; }  // the same, ImageInfo::as_bits
+    VkImageView bits_view() const { return bits_view_; }  // the same; ImageInfo::as_bits
     VkImageView layer_view(uint32_t layer) const { return layer_views_.at(layer); }  // a 2D image
     uint32_t layers() const { return info_.layers; }
     VkFormat format() const { return info_.format; }

@@ -51,8 +51,8 @@ std::unique_ptr<Technique> make_technique(const TechniqueContext& context) {
 Renderer::State::State(Gpu& gpu, const Series& series, const RendererOptions& options)
     : device_(gpu.device()),
       grid_(device_, series, options.max_brick_side, options.step_bytes),
-      placement_{grid_.header().affine, grid_.header().dims},
       options_(resolved(gpu, grid_.header().type, options)),
+      placement_{grid_.header().affine, grid_.header().dims},
       technique_(make_technique({grid_, options_})),
       shade_(grid_) {
     for (uint32_t i = 0; i < std::max(options.frames_in_flight, 1u); ++i)

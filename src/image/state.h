@@ -44,8 +44,8 @@ private:
 
     const gpu::Device& device_;
     Grid grid_;
-    Placement placement_;
     RendererOptions options_;
+    Placement placement_;
     std::unique_ptr<Technique> technique_;
     Shade shade_;
     Target target_;

@@ -36,13 +36,12 @@ void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame
     const VkImageUsageFlags attachment = always | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     const auto make = [&](gpu::Texture& texture, VkFormat format, VkExtent3D extent,
                           VkImageUsageFlags usage, const char* what) {
-        const bool as_bits = format == VK_FORMAT_R32_SFLOAT;
         texture = gpu::Texture(device,
                                {.format = format,
                                 .extent = extent,
                                 .usage = usage,
                                 .layers = frame.eyes(),
-                                .as_bits = as_bits},
+                                .as_bits = format == VK_FORMAT_R32_SFLOAT},
                                what);
         commands.discard_to_general(texture);
     };

@@ -24,7 +24,7 @@ class Counting {
 public:
     Counting(const gpu::Device& device, const Volume& volume, Size size)
         : grid_(device, series_of({&volume, 1}), 0, 0),
-          culling_(grid_, 1, make_depth_pyramid(grid_)),
+          culling_(grid_, make_depth_pyramid(grid_), 1),
           placement_{volume.affine, volume.dims},
           bytes_(uint64_t{4} * size.width * size.height) {
         const CaseTable table = marching_cubes_table();
@@ -38,8 +38,9 @@ public:
                          "a test");
         read_ = gpu::Buffer(device, bytes_, Memory::host, "a test");
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::image, Kind::image};
-        pipeline_ = gpu::Pipeline::compute(device, grid_.pipeline_info("counting", bindings, 8),
-                                           rasterize_counting);
+        pipeline_ = gpu::Pipeline::compute(
+            device, grid_.pipeline_info("counting", bindings, 8, {/* CLIPPED= */ 0}),
+            rasterize_counting);
         gpu::run_once(device, [&](gpu::Commands& commands) {
             commands.update(cases_, 0, table.packed.data(), sizeof(table.packed));
             commands.discard_to_general(counts_);

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Workgroup: one active group at a time. Thread: one block. Out: the list of blocks to draw, in
-// chunks, and the indirect arguments to draw it. Culling is in two passes (Kreskowski 2022, section
-// 3.5 and figure 2): blocks that the last frame saw are drawn first; then those of all others that
-// they do not hide, by a depth pyramid here, or as raster proxies have found before.
+// chunks, and the indirect arguments to draw it. Culling is in two passes (Kreskowski 2022,
+// section 3.5 and figure 2): blocks that the last frame saw are drawn first; then those of all
+// others that they do not hide, by a depth pyramid here, or as raster proxies have found before.
 #include "shaders/scene.glsl"
 #include "techniques/direct/list.glsl"
 #include "techniques/direct/frustum.glsl"

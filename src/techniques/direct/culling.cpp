@@ -34,7 +34,7 @@ glm::dvec3 to_vec(const std::array<double, 3>& v) {
 
 }  // namespace
 
-Culling::Culling(const Grid& grid, uint32_t workgroups, std::unique_ptr<OcclusionTest> occlusion)
+Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups)
     : grid_(grid), occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;

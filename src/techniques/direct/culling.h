@@ -16,7 +16,7 @@ namespace isorast {
 class Culling {
 public:
     // `workgroups`: how many draw a block, the y of draws().
-    Culling(const Grid& grid, uint32_t workgroups, std::unique_ptr<OcclusionTest> occlusion);
+    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups);
 
     // The active groups of each surface: once an isovalue.
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);

@@ -7,7 +7,6 @@
 
 #include <array>
 
-#include "gpu/device.h"
 #include "shaders/marching_cubes.h"
 #include "techniques/direct/culling.h"
 #include "techniques/direct/rasterizer.h"
@@ -33,8 +32,8 @@ public:
     explicit Direct(const TechniqueContext& context);
 
     Rasterizer rasterizer() const override { return kind_; }
-    Occlusion occlusion() const override { return culling_.occlusion(); }
     bool can_shade_forward() const override { return kind_ == Rasterizer::hardware; }
+    Occlusion occlusion() const override { return culling_.occlusion(); }
     void prepare(Commands& commands, const std::vector<float>& isovalues) override {
         culling_.find_active(commands, isovalues);
     }
@@ -48,33 +47,27 @@ private:
     void draw(Commands& commands, const Frame& frame, const Target& target, Culling::Select which);
 
     Rasterizer kind_;
-    Culling culling_;
     gpu::Buffer cases_;  // marching cubes: 256 x uvec2
-    std::unique_ptr<DirectRasterizer> rasterizer_;
+    std::unique_ptr<BlockRasterizer> rasterizer_;
+    Culling culling_;
 };
 
-// A workgroup a block in compute; the paper's task shader takes half a block.
-uint32_t workgroups_per_block(Rasterizer rasterizer) {
-    return rasterizer == Rasterizer::compute ? 1 : 2;
-}
-
 std::unique_ptr<OcclusionTest> make_occlusion_test(const TechniqueContext& context) {
-    if (context.options.occlusion != Occlusion::raster) return make_depth_pyramid(context.grid);
-    if (context.options.rasterizer == Rasterizer::compute)
-        throw Error(
-            "direct: raster proxies need the hardware rasterizer; use --culling hiz, or "
-            "--rasterizer hardware");
-    return make_raster_proxies(context.grid);
+    if (context.options.occlusion == Occlusion::raster &&
+        context.options.rasterizer == Rasterizer::compute)
+        throw Error("direct: raster proxies need the hardware rasterizer; use --culling hiz");
+    return context.options.occlusion == Occlusion::raster ? make_raster_proxies(context.grid)
+                                                          : make_depth_pyramid(context.grid);
 }
 
 Direct::Direct(const TechniqueContext& context)
     : kind_(context.options.rasterizer),
-      culling_(context.grid, workgroups_per_block(context.options.rasterizer),
-               make_occlusion_test(context)),
-      cases_(upload_cases(context.grid.device())) {
+      cases_(upload_cases(context.grid.device())),
+      rasterizer_(kind_ == Rasterizer::compute ? make_compute_rasterizer(context.grid, cases_)
+                                               : make_hardware_rasterizer(context.grid, cases_)),
+      // A workgroup for each block; the paper's task shader takes half a block.
+      culling_(context.grid, make_occlusion_test(context), kind_ == Rasterizer::compute ? 1 : 2) {
     if (context.options.exact) throw Error("direct: has no exact way; use --technique raymarch");
-    rasterizer_ = kind_ == Rasterizer::compute ? make_compute(context.grid, cases_)
-                                               : make_hardware(context.grid, cases_);
 }
 
 void Direct::record(Commands& commands, const Frame& frame, Target& target) {
@@ -101,7 +94,7 @@ void Direct::draw(Commands& commands, const Frame& frame, const Target& target,
             culling_.select(commands, surface, which);
         }
         const auto pass = commands.pass(EXTRACT[size_t(which)]);
-        rasterizer_->draw(commands, frame, surface, culling_, target);
+        rasterizer_->extract(commands, culling_, surface, frame, target);
     }
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Blocks to triangles by task and mesh shaders, rasterized by the device (Kreskowski 2022, section
-// 3.4).
+// The hardware rasterizer: task and mesh shaders extract the listed blocks' triangles and hand them
+// to the graphics pipeline (Kreskowski 2022, section 3.4).
 #include <fmt/format.h>
 #include <isorast/error.h>
 
 #include <array>
 
-#include "clipped_frag.h"
-#include "clipped_stereo_frag.h"
+#include "clip_frag.h"
+#include "clip_stereo_frag.h"
 #include "extract_forward_mesh.h"
 #include "extract_forward_stereo_mesh.h"
 #include "extract_mesh.h"
@@ -26,6 +26,10 @@ namespace {
 
 using gpu::Commands;
 using gpu::Kind;
+
+struct DrawPush {
+    uint32_t chunk, surface;
+};
 
 // What a picture is drawn into beside depth.
 enum class Colors : uint8_t { none, numbers, shaded };
@@ -52,18 +56,15 @@ std::vector<VkFormat> color_formats(Colors colors) {
     return {colors == Colors::shaded ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32_UINT};
 }
 
-class Hardware final : public DirectRasterizer {
+class HardwareRasterizer final : public BlockRasterizer {
 public:
-    Hardware(const Grid& grid, const gpu::Buffer& cases);
+    HardwareRasterizer(const Grid& grid, const gpu::Buffer& cases);
 
-    void clear(Commands& commands, const Frame& frame, const Target& target) override;
-    void draw(Commands& commands, const Frame& frame, uint32_t surface, const Culling& culling,
-              const Target& target) override;
+    void clear(Commands& commands, const Frame& frame, const Target& target) const override;
+    void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
+                 const Target& target) override;
 
 private:
-    struct Push {
-        uint32_t chunk, surface;
-    };
     const gpu::Pipeline& pipeline(const Frame& frame);
 
     const Grid& grid_;
@@ -71,8 +72,9 @@ private:
     std::array<gpu::Pipeline, 12> pipelines_;  // made when first needed
 };
 
-Hardware::Hardware(const Grid& grid, const gpu::Buffer& cases) : grid_(grid), cases_(cases) {
-    const gpu::Device& device = grid.device();
+HardwareRasterizer::HardwareRasterizer(const Grid& grid, const gpu::Buffer& cases)
+    : grid_(grid), cases_(cases) {
+    const gpu::Device& device = grid_.device();
     if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
         throw Error(fmt::format(
             "direct: {} cannot run its hardware rasterizer: {}; use --rasterizer compute",
@@ -81,7 +83,7 @@ Hardware::Hardware(const Grid& grid, const gpu::Buffer& cases) : grid_(grid), ca
                                                    : device.info().why_not_hardware));
 }
 
-const gpu::Pipeline& Hardware::pipeline(const Frame& frame) {
+const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
     const Colors colors = colors_of(frame);
     const bool stereo = frame.eyes() > 1, clipped = !frame.clips.empty();
     gpu::Pipeline& pipeline = pipelines_[size_t(colors) + 3 * stereo + 6 * clipped];
@@ -94,8 +96,8 @@ const gpu::Pipeline& Hardware::pipeline(const Frame& frame) {
     const Code stereo_mesh =
         forward ? grid_.pick(extract_forward_stereo_mesh, extract_forward_stereo_mesh_bricked)
                 : grid_.pick(extract_stereo_mesh, extract_stereo_mesh_bricked);
-    const std::array<Code, 3> fragment{clipped_frag, surface_number_frag, forward_frag};
-    const std::array<Code, 3> stereo_fragment{clipped_stereo_frag, surface_number_stereo_frag,
+    const std::array<Code, 3> fragment{clip_frag, surface_number_frag, forward_frag};
+    const std::array<Code, 3> stereo_fragment{clip_stereo_frag, surface_number_stereo_frag,
                                               forward_stereo_frag};
     std::vector<gpu::Shader> shaders{
         {VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)},
@@ -104,13 +106,13 @@ const gpu::Pipeline& Hardware::pipeline(const Frame& frame) {
         shaders.push_back(
             {VK_SHADER_STAGE_FRAGMENT_BIT, (stereo ? stereo_fragment : fragment)[size_t(colors)]});
     const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer},
-                                          sizeof(Push), {clipped});
+                                          sizeof(DrawPush), {clipped});
     pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders,
                                        {color_formats(colors), VK_FORMAT_D32_SFLOAT});
     return pipeline;
 }
 
-void Hardware::clear(Commands& commands, const Frame& frame, const Target& target) {
+void HardwareRasterizer::clear(Commands& commands, const Frame& frame, const Target& target) const {
     const Color& b = frame.background;
     VkClearColorValue color{};
     if (frame.shading == Shading::forward) color = {{b.r, b.g, b.b, b.a}};
@@ -119,12 +121,12 @@ void Hardware::clear(Commands& commands, const Frame& frame, const Target& targe
     commands.barrier();
 }
 
-void Hardware::draw(Commands& commands, const Frame& frame, uint32_t surface,
-                    const Culling& culling, const Target& target) {
+void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uint32_t surface,
+                                 const Frame& frame, const Target& target) {
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
     commands.bind(pipeline(frame), {culling.drawn_blocks(), cases_});
     for (uint32_t chunk = 0; chunk < culling.chunks(); ++chunk) {
-        commands.push(Push{chunk, surface});
+        commands.push(DrawPush{chunk, surface});
         commands.draw_mesh_tasks_indirect(culling.draws(),
                                           chunk * sizeof(VkDrawMeshTasksIndirectCommandEXT));
     }
@@ -134,8 +136,9 @@ void Hardware::draw(Commands& commands, const Frame& frame, uint32_t surface,
 
 }  // namespace
 
-std::unique_ptr<DirectRasterizer> make_hardware(const Grid& grid, const gpu::Buffer& cases) {
-    return std::make_unique<Hardware>(grid, cases);
+std::unique_ptr<BlockRasterizer> make_hardware_rasterizer(const Grid& grid,
+                                                          const gpu::Buffer& cases) {
+    return std::make_unique<HardwareRasterizer>(grid, cases);
 }
 
 }  // namespace isorast

@@ -19,27 +19,27 @@ layout(set = 1, binding = 1, std430) readonly buffer Cases { uvec2 cases[]; };
 // Depth as the bits of floats: of numbers that are not negative, the order is the same.
 layout(set = 1, binding = 2, r32ui) uniform uimage2DArray depth_bits;
 layout(set = 1, binding = 3, r32ui) writeonly uniform uimage2DArray surface_numbers;
-layout(push_constant) uniform Push { uint chunk, surface; };
 layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
+layout(push_constant) uniform Push { uint chunk, surface; };
 
-uint eye = 0;  // the one that all threads draw for
+uint eye = 0;  // that all threads draw for
 
 #include "techniques/direct/cell_rows.glsl"
 
 // Every pixel of every triangle goes through here.
-void write_pixel(ivec2 at, float depth, bool front) {
-    const ivec3 pixel = ivec3(at, eye);
-    if (CLIPPED && !is_kept(eye, vec2(at) + 0.5, depth)) return;
+void write_pixel(ivec2 pixel, float depth, bool front) {
+    if (CLIPPED && !is_kept(eye, vec2(pixel) + 0.5, depth)) return;
+    const ivec3 place = ivec3(pixel, eye);
 #if defined(COUNTING)
     // A test's: front faces less back faces; 0 everywhere if the surface is closed.
-    imageAtomicAdd(depth_bits, pixel, front ? 1u : ~0u);
+    imageAtomicAdd(depth_bits, place, front ? 1u : ~0u);
 #elif defined(NUMBERED)
     // All that a dispatch draws has the same number: whoever raises the depth may write it.
     const uint bits = floatBitsToUint(depth);
-    if (imageAtomicMax(depth_bits, pixel, bits) < bits)
-        imageStore(surface_numbers, pixel, uvec4(surface));
+    if (imageAtomicMax(depth_bits, place, bits) < bits)
+        imageStore(surface_numbers, place, uvec4(surface));
 #else
-    imageAtomicMax(depth_bits, pixel, floatBitsToUint(depth));
+    imageAtomicMax(depth_bits, place, floatBitsToUint(depth));
 #endif
 }
 
@@ -84,8 +84,8 @@ CellRow cell_row(uint row) {
                    signs[corner_row(y, z + 1)], signs[corner_row(y + 1, z + 1)]);
 }
 
-// Counts the vertices on a corner row's edges, of the cell layers from `layer` on.
-void count_vertices(uint row, uint layer, uint layers, ivec3 left) {
+// Lists the vertices on a corner row's edges, of the cell layers from `layer` on.
+void list_vertices(uint row, uint layer, uint layers, ivec3 left) {
     const uint y = row % 9, z = row / 9;
     const uint cells = left.x >= 8 ? 0xffu : (1u << max(left.x, 0)) - 1, corners = cells << 1 | 1;
     uint mask = 0;
@@ -96,14 +96,10 @@ void count_vertices(uint row, uint layer, uint layers, ivec3 left) {
     }
     const uint bits = edge_bits(signs[row], signs[min(row + 1, ROWS - 1)],
                                 signs[min(row + 9, ROWS - 1)]) & mask;
+    uint vertex = bits == 0 ? 0 : atomicAdd(vertex_total, bitCount(bits));
     edges[row] = bits;
-    first_vertex[row] = bits == 0 ? 0 : atomicAdd(vertex_total, bitCount(bits));
-}
-
-// Each vertex learns its edge.
-void number_vertices(uint row) {
-    uint vertex = first_vertex[row];
-    for (uint rest = edges[row]; rest != 0; rest &= rest - 1)
+    first_vertex[row] = vertex;
+    for (uint rest = bits; rest != 0 && vertex < MAX_VERTICES; rest &= rest - 1)
         vertex_x[vertex++] = row << 5 | findLSB(rest);
 }
 
@@ -171,8 +167,9 @@ uvec3 vertex_on(uint edge) {
 // Each thread its own triangles; large ones are marked and left.
 void rasterize_alone() {
     for (uint i = gl_LocalInvocationIndex; i < triangle_total; i += THREADS) {
-        triangles[i] &= ~LARGE;
-        const uvec3 on = edges_of(triangles[i]);
+        if (eye > 0) triangles[i] &= ~LARGE;
+        const uint triangle = triangles[i];
+        const uvec3 on = edges_of(triangle);
         const uvec3 a = vertex_on(on.x), b = vertex_on(on.y), c = vertex_on(on.z);
         bool large = a.z == UNCLIPPED || b.z == UNCLIPPED || c.z == UNCLIPPED;
         Triangle t;
@@ -223,7 +220,7 @@ void main() {
     while (layer < BLOCK) {
         if (thread == 0) vertex_total = triangle_total = large_total = 0;
         barrier();
-        if (thread < ROWS) count_vertices(thread, layer, layers, left);
+        if (thread < ROWS) list_vertices(thread, layer, layers, left);
         if (thread >= THREADS - 64) list_triangles(thread - (THREADS - 64), layer, layers, left);
         barrier();
         if (vertex_total > MAX_VERTICES || triangle_total > MAX_TRIANGLES) {
@@ -232,8 +229,12 @@ void main() {
             continue;
         }
         for (eye = 0; eye < frame.counts.x; ++eye) {
-            if (thread < ROWS) number_vertices(thread);
-            barrier();
+            if (eye > 0) {
+                if (thread == 0) vertex_total = large_total = 0;
+                barrier();
+                if (thread < ROWS) list_vertices(thread, layer, layers, left);
+                barrier();
+            }
             project_vertices(first, iso);
             barrier();
             rasterize_alone();

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: MIT
-// The two ways to turn listed blocks into depth: mesh shaders and the device's rasterizer
+// The two ways to turn listed blocks into depth: task and mesh shaders and the graphics pipeline
 // (hardware.cpp), or compute alone (compute.cpp). All else of direct is the same for both.
 #pragma once
 #include <memory>
 
-#include "gpu/commands.h"
-#include "grid/grid.h"
-#include "image/target.h"
 #include "techniques/direct/culling.h"
+#include "techniques/technique.h"
 
 namespace isorast {
 
-class DirectRasterizer {
+class BlockRasterizer {
 public:
-    virtual ~DirectRasterizer() = default;
-    // Nothing drawn yet: depth 0, and the background where the rasterizer colours. Ends with a
-    // barrier.
-    virtual void clear(gpu::Commands& commands, const Frame& frame, const Target& target) = 0;
-    // The blocks that culling has listed, of one surface. Ends with a barrier.
-    virtual void draw(gpu::Commands& commands, const Frame& frame, uint32_t surface,
-                      const Culling& culling, const Target& target) = 0;
+    virtual ~BlockRasterizer() = default;
+    // Depth 0, and the background where the rasterizer colours. Ends with a barrier.
+    virtual void clear(gpu::Commands& commands, const Frame& frame, const Target& target) const = 0;
+    // The blocks of one surface that `culling` has listed. Ends with a barrier.
+    virtual void extract(gpu::Commands& commands, const Culling& culling, uint32_t surface,
+                         const Frame& frame, const Target& target) = 0;
 };
 
-// `cases`: the table of marching cubes, 256 x uvec2.
-std::unique_ptr<DirectRasterizer> make_hardware(const Grid& grid, const gpu::Buffer& cases);
-std::unique_ptr<DirectRasterizer> make_compute(const Grid& grid, const gpu::Buffer& cases);
+// `cases`: the table of marching cubes, 256 x uvec2. The first throws Error where the device
+// cannot.
+std::unique_ptr<BlockRasterizer> make_hardware_rasterizer(const Grid& grid,
+                                                          const gpu::Buffer& cases);
+std::unique_ptr<BlockRasterizer> make_compute_rasterizer(const Grid& grid,
+                                                         const gpu::Buffer& cases);
 
 }  // namespace isorast

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// variant clipped_stereo_frag: -DSTEREO
+// variant clip_stereo_frag: -DSTEREO
 // Thread: one fragment. Out: its depth, unless a clip plane cuts it off; only drawn where there are
 // clip planes.
 #include "shaders/scene.glsl"
