@@ -25,10 +25,10 @@ using uint = uint32_t;
 ISORAST_CONSTANT uint BLOCK = 8;
 // A group is 4x4x2 = 32 blocks: one 32-bit mask of active blocks.
 ISORAST_CONSTANT uint GROUP_X = 4, GROUP_Y = 4, GROUP_Z = 2, GROUP_BLOCKS = 32;
-// A chunk is 1024 groups: 32768 blocks, so that a block's place in its chunk fits a 16-bit list
-// entry, and the two halves of its blocks fit the 65535 workgroups that every device can launch
-// along an axis.
-ISORAST_CONSTANT uint CHUNK_GROUPS = 1024, CHUNK_BLOCKS = 32768;
+// Drawn blocks are listed in quartets of 2x2x1: a quarter of the memory of a list of blocks. A draw
+// takes 2^19 quartets, 32768 in a row: with eight workgroups each, the most that every device can
+// launch at once (2^22) and along an axis (65535).
+ISORAST_CONSTANT uint QUARTETS = 8, DRAW_QUARTETS = 1 << 19, DRAW_ROW = 1 << 15;
 // Most workgroups that one list-driven dispatch starts; they loop over longer lists.
 ISORAST_CONSTANT uint MAX_LIST_GROUPS = 32768;
 ISORAST_CONSTANT uint MAX_LEVELS = 30;  // of the min-max pyramid: any number of blocks a side

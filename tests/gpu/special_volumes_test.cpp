@@ -83,6 +83,33 @@ TEST_F(GpuTest, AVeryLongVolume) {
     }
 }
 
+// More blocks than a row of workgroups: each of 33024 quartets of blocks holds a bump, and each
+// shows.
+TEST_F(GpuTest, MoreBlocksThanARowOfWorkgroups) {
+    if (std::getenv("ISORAST_QUICK")) GTEST_SKIP();  // half a minute
+    const Volume volume =
+        volume_of<uint8_t>({4096, 2057, 9}, VoxelType::u8, [](uint32_t i, uint32_t j, uint32_t k) {
+            return k == 4 && (i % 16 + 15) % 16 < 6 && (j % 16 + 15) % 16 < 6 ? 255 : 0;
+        });
+    Frame f = frame(*view_preset(volume, "+z", {.orthographic = true}), {128.0});
+    f.size = {1024, 514};
+    f.camera.height = 2056;  // 4 voxels a pixel
+    f.shading = Shading::depth;
+    for (Lane& lane : lanes(volume)) {
+        if (lane.options.technique != "direct") continue;
+        for (bool culling : {false, true}) {
+            f.culling = culling;
+            const Image image = lane.renderer.render(f);
+            std::vector<bool> shows(size_t{256} * 129);
+            for (size_t i = 0; i < image.depth.size(); ++i)
+                if (std::isfinite(image.depth[i]))
+                    shows[i % 1024 / 4 + 256 * (i / 1024 / 4)] = true;
+            EXPECT_EQ(std::ranges::count(shows, false), 0) << lane.name << ' ' << culling;
+            EXPECT_EQ(lane.renderer.stats().blocks_drawn, 33024u);
+        }
+    }
+}
+
 TEST_F(GpuTest, TheSmallestVolumes) {
     for (std::array<uint32_t, 3> dims : {std::array<uint32_t, 3>{1, 1, 1}, {2, 1, 1}, {2, 2, 2}}) {
         Volume volume = volume_of<uint8_t>(dims, VoxelType::u8,

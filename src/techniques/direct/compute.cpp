@@ -17,7 +17,7 @@ using gpu::Commands;
 using gpu::Kind;
 
 struct Push {
-    uint32_t chunk, surface;
+    uint32_t draw, surface;
 };
 
 class ComputeRasterizer final : public BlockRasterizer {
@@ -33,9 +33,9 @@ public:
                  const Target& target) override {
         commands.bind(pipeline(frame), {culling.drawn_blocks(), cases_,
                                         gpu::Binding(target.depth.bits_view()), target.surfaces});
-        for (uint32_t chunk = 0; chunk < culling.chunks(); ++chunk) {
-            commands.push(Push{chunk, surface});
-            commands.dispatch_indirect(culling.draws(), chunk * sizeof(VkDispatchIndirectCommand));
+        for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
+            commands.push(Push{draw, surface});
+            commands.dispatch_indirect(culling.draws(), draw * sizeof(VkDispatchIndirectCommand));
         }
         commands.barrier();
     }

@@ -38,14 +38,15 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     : grid_(grid), occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
-    chunks_ = (groups + shared::CHUNK_GROUPS - 1) / shared::CHUNK_GROUPS;
-    drawn_blocks_ = gpu::Buffer(device, uint64_t{2} * shared::GROUP_BLOCKS * groups, Memory::device,
-                                "the list of drawn blocks");
-    const uint64_t draw_bytes = chunks_ * sizeof(VkDrawMeshTasksIndirectCommandEXT);
+    const uint64_t quartets = uint64_t{shared::QUARTETS} * groups;
+    draw_count_ = uint32_t((quartets + shared::DRAW_QUARTETS - 1) / shared::DRAW_QUARTETS);
+    drawn_blocks_ =
+        gpu::Buffer(device, 4 + 4 * quartets, Memory::device, "the list of drawn blocks");
+    const uint64_t draw_bytes = draw_count_ * sizeof(VkDispatchIndirectCommand);
     draws_ = gpu::Buffer(device, draw_bytes, Memory::device, "draw arguments");
     empty_draws_ = gpu::Buffer(device, draw_bytes, Memory::host, "draw arguments");
-    for (uint32_t i = 0; i < chunks_; ++i)
-        empty_draws_.data<VkDrawMeshTasksIndirectCommandEXT>()[i] = {0, workgroups, 1};
+    for (uint32_t i = 0; i < draw_count_; ++i)
+        empty_draws_.data<VkDispatchIndirectCommand>()[i] = {0, 0, 4 * workgroups};
     counters_ = gpu::Buffer(device, sizeof(shared::Counters), Memory::device, "counters");
     for (gpu::Buffer& visible : visible_)
         visible = gpu::Buffer(device, uint64_t{4} * groups, Memory::device, "visible blocks");
@@ -140,6 +141,7 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
 
 void Culling::select(Commands& commands, uint32_t surface, Select which) {
     commands.copy(empty_draws_, 0, draws_, 0, draws_.bytes());
+    commands.update(drawn_blocks_, 0, &ZERO, sizeof(ZERO));
     commands.barrier();
     commands.bind(select_[size_t(which)],
                   {active_groups_[surface], draws_, drawn_blocks_, counters_, visible_[seen_],

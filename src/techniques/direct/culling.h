@@ -15,7 +15,7 @@ namespace isorast {
 
 class Culling {
 public:
-    // `workgroups`: how many draw a block, the y of draws().
+    // `workgroups`: how many draw a block.
     Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups);
 
     // The active groups of each surface: once an isovalue.
@@ -35,12 +35,11 @@ public:
     void select(gpu::Commands& commands, uint32_t surface, Select which);
     Occlusion occlusion() const { return occlusion_->kind(); }
 
-    // A chunk is 32768 blocks: entry e of chunk c, a block's 16-bit place in the chunk, is at
-    // [c * 32768 + e].
+    // Quartets of blocks (list.glsl), their count before them; and as many indirect dispatches or
+    // mesh draws as draw_count() for them, one after the other.
     const gpu::Buffer& drawn_blocks() const { return drawn_blocks_; }
-    // A chunk's blocks, workgroups for each, 1: arguments of an indirect dispatch or mesh draw.
     const gpu::Buffer& draws() const { return draws_; }
-    uint32_t chunks() const { return chunks_; }
+    uint32_t draw_count() const { return draw_count_; }
     const gpu::Buffer& counters() const { return counters_; }
     uint64_t gpu_bytes() const;
 
@@ -49,7 +48,7 @@ private:
     bool is_cut(const Camera& camera) const;
 
     const Grid& grid_;
-    uint32_t chunks_ = 0;
+    uint32_t draw_count_ = 0;
     std::unique_ptr<OcclusionTest> occlusion_;
     gpu::Pipeline find_active_, find_first_visible_;
     std::array<gpu::Pipeline, 3> select_;     // one for each Select

@@ -4,8 +4,9 @@
 // isovalue crosses, each with a mask of such blocks (Kreskowski 2022, section 3.5.1, once an
 // isovalue).
 #include "shaders/scene.glsl"
-#define ACTIVE_GROUPS_ACCESS
 #include "techniques/direct/list.glsl"
+#define ACTIVE_GROUPS_ACCESS
+#include "techniques/direct/active_groups.glsl"
 
 layout(local_size_x = 128) in;
 

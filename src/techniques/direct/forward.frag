@@ -11,7 +11,7 @@
 layout(location = 0) in vec3 position;  // voxel space
 layout(location = 1) in vec3 gradient;
 layout(location = 0) out vec4 color;
-layout(push_constant) uniform Push { uint chunk, surface; };
+layout(push_constant) uniform Push { uint draw, surface; };
 
 void main() {
     clip_fragment();

@@ -28,7 +28,7 @@ using gpu::Commands;
 using gpu::Kind;
 
 struct DrawPush {
-    uint32_t chunk, surface;
+    uint32_t draw, surface;
 };
 
 // What a picture is drawn into beside depth.
@@ -125,10 +125,10 @@ void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uin
                                  const Frame& frame, const Target& target) {
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
     commands.bind(pipeline(frame), {culling.drawn_blocks(), cases_});
-    for (uint32_t chunk = 0; chunk < culling.chunks(); ++chunk) {
-        commands.push(DrawPush{chunk, surface});
+    for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
+        commands.push(DrawPush{draw, surface});
         commands.draw_mesh_tasks_indirect(culling.draws(),
-                                          chunk * sizeof(VkDrawMeshTasksIndirectCommandEXT));
+                                          draw * sizeof(VkDrawMeshTasksIndirectCommandEXT));
     }
     commands.end_rendering();
     commands.barrier();

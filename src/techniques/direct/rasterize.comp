@@ -10,17 +10,16 @@
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
 #include "techniques/direct/list.glsl"
+#include "techniques/direct/drawn.glsl"
 
 const uint THREADS = 128;
 layout(local_size_x = THREADS) in;
 
-layout(set = 1, binding = 0, std430) readonly buffer DrawnBlocks { uint16_t drawn_blocks[]; };
 layout(set = 1, binding = 1, std430) readonly buffer Cases { uvec2 cases[]; };
 // Depth as the bits of floats: of numbers that are not negative, the order is the same.
 layout(set = 1, binding = 2, r32ui) uniform uimage2DArray depth_bits;
 layout(set = 1, binding = 3, r32ui) writeonly uniform uimage2DArray surface_numbers;
 layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
-layout(push_constant) uniform Push { uint chunk, surface; };
 
 uint eye = 0;  // that all threads draw for
 
@@ -210,9 +209,9 @@ void rasterize_together(uvec3 first, float iso) {
 void main() {
     const uint thread = gl_LocalInvocationIndex;
     const float iso = frame.surfaces[surface].w;
-    const uint entry = uint(drawn_blocks[chunk * CHUNK_BLOCKS + gl_WorkGroupID.x]);
-    const uint group = chunk * CHUNK_GROUPS + entry / GROUP_BLOCKS;
-    const uvec3 first = (group_origin(group) + block_in_group(entry % GROUP_BLOCKS)) * BLOCK;
+    uvec3 block;
+    if (!my_block(gl_WorkGroupID.z, block)) return;
+    const uvec3 first = block * BLOCK;
     const ivec3 left = cells_left(first);
     load_values(first, iso);
 

@@ -7,7 +7,7 @@
 #include "techniques/direct/fragment.glsl"
 
 layout(location = 0) out uint surface_number;
-layout(push_constant) uniform Push { uint chunk, surface; };
+layout(push_constant) uniform Push { uint draw, surface; };
 
 void main() {
     clip_fragment();
