@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// From a file to a Volume. This part of the library needs the format libraries; the core does not.
+// From files to Volumes and Series. This part of the library needs the format libraries; the core
+// does not.
 #pragma once
-#include <isorast/volume.h>
+#include <isorast/series.h>
 
 namespace isorast {
 
@@ -19,5 +20,11 @@ struct LoadOptions {
 // memory-mapped. Throws Error: one line with the file, what was expected, what was found, and what
 // to do. Nothing is allocated that the file's own size does not justify.
 Volume load_volume(const std::string& path, const LoadOptions& options = {});
+
+// The time steps of one file or formula ("coral:64:steps=30"); of several files, a step each; or of
+// the files in a directory, which must be of one format, in the order of the numbers in their names
+// (t2 before t10). Only the first is read here; the others say what is wrong with them when they
+// are loaded. LoadOptions::time_step does not count.
+Series open_series(const std::vector<std::string>& paths, const LoadOptions& options = {});
 
 }  // namespace isorast
