@@ -155,12 +155,13 @@ Step& Steps::get(uint32_t number, const std::vector<uint32_t>& in_flight) {
 }
 
 void Steps::settle() {
-    Step& step = *reading_into_;
+    bool whole = false;
     try {
-        if (reading_.get()) step.number = reading_number_;
+        whole = reading_.get();
     } catch (const std::exception&) {
-        // A step that is not asked for may fail. When it is asked for, it is read once more.
+        whole = false;  // nobody asked for this step; if one does, it is read once more
     }
+    if (whole) reading_into_->number = reading_number_;
 }
 
 void Steps::read_ahead(uint32_t number, const std::vector<uint32_t>& in_flight) {

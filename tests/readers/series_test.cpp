@@ -140,12 +140,34 @@ TEST(Series, WhatIsNoSeries) {
     const std::string steps = scratch.write(
         "steps.nrrd", "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 2 2\nencoding: raw\n\n" +
                           std::string(16, 'a'));
-    const Series series = open_series({scratch.path("a.nrrd"), steps});
-    EXPECT_EQ(message_of([&] { series.load(1); }),
+    EXPECT_EQ(message_of([&] { open_series({scratch.path("a.nrrd"), steps}); }),
               steps + ": expected one time step in each of 2 files, found 2 in this one");
 }
 
+TEST(Series, HeadersAloneAreReadAtFirst) {
+    const Scratch scratch;
+    NiftiFile header;
+    header.dim = {4, 4, 3, 2, 5, 1, 1, 1};
+    const std::string cut = gzip(header.header() + std::string(100, 'x'));
+    const Series series = open_series({scratch.write("cut.nii.gz", cut)});
+    EXPECT_EQ(series.steps, 5u);
+    EXPECT_THROW(series.load(0), Error);
+    LoadOptions options;
+    options.header_only = true;
+    const Volume volume = load_volume(scratch.write("a.nrrd", NRRD_2X2X2), options);
+    EXPECT_EQ(volume.dims, (std::array<uint32_t, 3>{2, 2, 2}));
+    EXPECT_TRUE(volume.bytes.span().empty());
+}
+
 TEST(Series, AMemberThatDiffersIsNamed) {
+    const Scratch scratch;
+    const std::string a = scratch.write("a.nrrd", NRRD_2X2X2 + "aaaaaaaa");
+    const std::string b = scratch.write(
+        "b.nrrd",
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 3\nencoding: raw\n\nbbbbbbbbbbbb");
+    EXPECT_TRUE(message_of([&] {
+                    open_series({a, a, b});
+                }).starts_with(b + ": expected the dimensions of " + a + ", 2x2x2, found 2x2x3"));
     const Volume first = make_procedural("sphere:8");
     const auto differs = [&](const std::string& name, auto change) {
         Volume other = make_procedural(name);

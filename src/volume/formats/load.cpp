@@ -105,7 +105,7 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
     try {
         Volume volume = reader.load(path, options);
         if (options.spacing) set_spacing(volume, *options.spacing);
-        check(volume);
+        if (!options.header_only) check(volume);
         return volume;
     } catch (const std::bad_alloc&) {
         fail(path, "there is not enough memory for its voxels");

@@ -85,31 +85,42 @@ std::vector<std::string> volume_files(const std::string& folder) {
     return paths;
 }
 
-Series steps_of_file(const std::string& path, LoadOptions options) {
+Volume load_header(const std::string& path, LoadOptions options) {
     options.time_step = 0;
+    options.header_only = true;
+    return load_volume(path, options);
+}
+
+Series steps_of_file(const std::string& path, const LoadOptions& options) {
     return {.name = path,
-            .steps = load_volume(path, options).time_steps,
+            .steps = load_header(path, options).time_steps,
             .load = [path, options](uint32_t step) {
                 LoadOptions at_step = options;
                 at_step.time_step = step;
+                at_step.header_only = false;
                 return load_volume(path, at_step);
             }};
 }
 
-Series step_in_each_file(std::string name, std::vector<std::string> paths, LoadOptions options) {
+Series step_in_each_file(std::string name, const std::vector<std::string>& paths,
+                         LoadOptions options) {
+    const Volume first = load_header(paths[0], options);
+    for (const std::string& path : paths) {
+        const Volume header = load_header(path, options);
+        if (header.time_steps > 1)
+            fail(path, "expected one time step in each of {} files, found {} in this one",
+                 paths.size(), header.time_steps);
+        check_step(header, first);
+    }
     options.time_step = 0;
+    options.header_only = false;
     const auto count = static_cast<uint32_t>(paths.size());
-    Series series{.name = std::move(name), .steps = count, .load = {}};
-    series.load = [paths = std::move(paths), options](uint32_t step) {
-        Volume volume = load_volume(paths[step], options);
-        if (volume.time_steps > 1)
-            fail(paths[step], "expected one time step in each of {} files, found {} in this one",
-                 paths.size(), volume.time_steps);
-        volume.time_steps = static_cast<uint32_t>(paths.size());
-        volume.time_step = step;
-        return volume;
-    };
-    return series;
+    return {.name = std::move(name), .steps = count, .load = [paths, options](uint32_t step) {
+                Volume volume = load_volume(paths[step], options);
+                volume.time_steps = static_cast<uint32_t>(paths.size());
+                volume.time_step = step;
+                return volume;
+            }};
 }
 
 }  // namespace
