@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "frames.h"
 #include "histogram.h"
 #include "options.h"
 
@@ -70,16 +71,23 @@ struct Info : Command {
         app.add_flag("--json", json, "Print JSON");
         app.footer(
             "Example: isorast info head.nrrd\n"
+            "         isorast info run/ --time 12\n"
             "         isorast info brick.raw --dims 256x256x128 --type u16");
     }
 
     std::string render_command(double isovalue) const {
-        return fmt::format("isorast render {}{} --iso {:.6g}", shell_word(arguments.input),
-                           arguments.as_typed, isovalue);
+        std::string line = "isorast render";
+        for (const std::string& input : arguments.inputs)
+            line += " " + shell_word(input);
+        return fmt::format("{}{} --iso {:.6g}", line, arguments.as_typed, isovalue);
     }
 
     int run() override {
-        Volume volume = load_volume(arguments.input, arguments.load);
+        const Series series = open_series(arguments.inputs, arguments.load);
+        const auto steps = parse_steps(series, arguments.time, /* all= */ false);
+        if (steps.size() > 1)
+            throw CLI::ValidationError("--time", "info shows one time step, found several");
+        Volume volume = series.load(steps.front());
         const bool mapped = volume.bytes.mapped();
         sample(volume);
         const Statistics values = statistics(volume);
@@ -145,8 +153,8 @@ struct Info : Command {
                              m[3] + 0.));  // -0 + 0 is 0
         }
         if (volume.time_steps > 1) {
-            line("time step",
-                 fmt::format("{} of 0 to {}", volume.time_step, volume.time_steps - 1));
+            line("time steps", fmt::format("{}, this is {} of 0 to {}", volume.time_steps,
+                                           volume.time_step, volume.time_steps - 1));
         }
     }
 

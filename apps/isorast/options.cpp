@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "frames.h"
+
 namespace isorast::cli {
 namespace {
 
@@ -96,8 +98,10 @@ void VolumeArguments::add_to(CLI::App& app) {
             ->type_name(type)
             ->group("Reading");
     };
-    app.add_option("INPUT", input,
-                   "A volume file (raw, NRRD, MetaImage, NIfTI) or a formula like sphere:64")
+    app.add_option(
+           "INPUT", inputs,
+           "A volume file (raw, NRRD, MetaImage, NIfTI) or a formula like sphere:64; several "
+           "files or a\ndirectory of them: a time series")
         ->type_name("")
         ->required();
     add("--dims", "Voxels of a raw file, x fastest", "WxHxD", [this](const std::string& text) {
@@ -126,20 +130,21 @@ void VolumeArguments::add_to(CLI::App& app) {
         }
         load.spacing = {n[0], n[1], n[2]};
     });
-    const auto count_of = [](const std::string& option, const std::string& text) {
-        uint64_t number = 0;
-        const char* end = text.data() + text.size();
-        const auto [next, error] = std::from_chars(text.data(), end, number);
-        if (error != std::errc{} || next != end || (option == "--time" && number > UINT32_MAX)) {
-            throw CLI::ValidationError(option, "expected a whole number, found \"" + text + "\"");
-        }
-        return number;
-    };
     add("--offset", "Bytes to skip at the start of a raw file", "BYTES",
-        [this, count_of](const std::string& text) { load.offset = count_of("--offset", text); });
-    add("--time", "Time step, from 0", "N", [this, count_of](const std::string& text) {
-        load.time_step = static_cast<uint32_t>(count_of("--time", text));
-    });
+        [this](const std::string& text) {
+            const char* end = text.data() + text.size();
+            const auto [next, error] = std::from_chars(text.data(), end, load.offset);
+            if (error != std::errc{} || next != end) {
+                throw CLI::ValidationError("--offset",
+                                           "expected a whole number, found \"" + text + "\"");
+            }
+        });
+    add("--time", "Time steps, from 0: one, all, FIRST:LAST or FIRST:LAST:STEP", "STEPS",
+        [this](const std::string& text) {
+            if (const std::string wrong = check_steps(text); !wrong.empty())
+                throw CLI::ValidationError("--time", wrong);
+            time = text;
+        });
 }
 
 std::string human_bytes(uint64_t bytes) {

@@ -29,11 +29,12 @@ std::unique_ptr<Command> make_info(CLI::App& parent);
 std::unique_ptr<Command> make_devices(CLI::App& parent);
 std::unique_ptr<Command> make_compare(CLI::App& parent);
 
-// INPUT and the options of LoadOptions.
+// INPUT, the options of LoadOptions, and which time steps.
 struct VolumeArguments {
-    std::string input;
+    std::vector<std::string> inputs;
     LoadOptions load;
-    std::string as_typed;  // the load options once more, for a command line to copy
+    std::string time;      // "3", "all", "2:10", "0:30:5"; see frames.h
+    std::string as_typed;  // all of this once more, for a command line to copy
 
     void add_to(CLI::App& app);
 };

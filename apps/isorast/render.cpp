@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// isorast render: one picture of a volume's isosurfaces.
+// isorast render: pictures of a volume's isosurfaces, one or one for each time step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "options.h"
+#include "frames.h"
 #include "report.h"
 #include "view.h"
 
@@ -22,16 +22,17 @@ double seconds_since(Clock::time_point start) {
 }
 
 // The file's name without its extensions, in the current folder; a formula's with '-' for ':'.
-std::string default_output(const std::string& input) {
+std::string default_output(const std::string& input, bool several) {
     std::string name = input;
     if (is_procedural(input)) {
         std::ranges::replace_if(name, [](char c) { return c == ':' || c == '/'; }, '-');
     } else {
-        std::filesystem::path path = std::filesystem::path(input).filename();
+        std::filesystem::path path = std::filesystem::absolute(input).lexically_normal();
+        path = path.has_filename() ? path.filename() : path.parent_path().filename();
         if (path.extension() == ".gz") path = path.stem();
         name = path.stem().string();
     }
-    return name + ".png";
+    return name + (several ? "_{time:4}.png" : ".png");
 }
 
 // a/b.png -> a/b.difference.png
@@ -52,12 +53,14 @@ struct Render : Command {
     Frame frame;
     std::vector<std::string> isovalue_words;
     std::string output, reference;
+    std::vector<uint32_t> steps;                   // of the series
+    std::vector<std::string> outputs, references;  // the pictures of these
     bool transparent = false, stats = false, json = false;
     double tolerance = 0;
     size_t repeat = 1;
 
     explicit Render(CLI::App& parent)
-        : Command(*parent.add_subcommand("render", "Render isosurfaces to a PNG file")) {
+        : Command(*parent.add_subcommand("render", "Render isosurfaces to PNG files")) {
         arguments.add_to(app);
         add_surface_options();
         add_picture_options();
@@ -67,7 +70,8 @@ struct Render : Command {
         app.footer(
             "Examples: isorast render head.nrrd --iso 300 -o head.png\n"
             "          isorast render ct.nii.gz --iso 200,600 --color bone,red --view A --size "
-            "1920x1080");
+            "1920x1080\n"
+            "          isorast render run/ --time all -o frame_{frame:4}.png");
     }
 
     void add_surface_options() {
@@ -175,8 +179,10 @@ struct Render : Command {
     }
 
     void add_output_options() {
-        app.add_option("-o,--output", output,
-                       "The PNG file, - for standard output; default: INPUT's name in this folder")
+        app.add_option(
+               "-o,--output", output,
+               "The PNG file, - for standard output; default: INPUT's name in this folder.\n"
+               "{frame:4} counts the pictures of a series, {time:4} is the time step")
             ->type_name("FILE")
             ->check(CLI::Validator(
                 [](const std::string& path) {
@@ -209,7 +215,6 @@ struct Render : Command {
 
     int run() override {
         const auto start = Clock::now();
-        if (output.empty()) output = default_output(arguments.input);
         if (output == "-" && json) {
             throw CLI::ValidationError("--json",
                                        "standard output takes the picture; name a file with -o");
@@ -220,7 +225,12 @@ struct Render : Command {
                                        "compare them with isorast compare");
         if (transparent) frame.background.a = 0;
 
-        const Volume volume = load_volume(arguments.input, arguments.load);
+        const Series series = open_series(arguments.inputs, arguments.load);
+        steps = parse_steps(series, arguments.time, names_frames(output));
+        if (output.empty()) output = default_output(arguments.inputs.front(), steps.size() > 1);
+        outputs = picture_names("--output", output, steps);
+        if (!reference.empty()) references = picture_names("--reference", reference, steps);
+        const Volume volume = series.load(steps.front());
         frame.isovalues = parse_isovalues(
             isovalue_words.empty() ? "auto" : fmt::format("{}", fmt::join(isovalue_words, ",")),
             volume);
@@ -238,10 +248,12 @@ struct Render : Command {
         if (frame.shading == Shading::forward && options.rasterizer == Rasterizer::automatic)
             options.rasterizer = Rasterizer::hardware;
         Gpu gpu(gpu_options);
-        if (const std::string unfit = what_does_not_fit(gpu, volume, options); !unfit.empty()) {
+        if (const std::string unfit =
+                what_does_not_fit(gpu, volume, options, uint32_t(steps.size()));
+            !unfit.empty()) {
             throw Error(unfit);
         }
-        Renderer renderer(gpu, volume, options);
+        Renderer renderer(gpu, chosen_steps(series, steps, volume), options);
         note_isovalues_outside(volume.name, renderer.value_range());
         if (options.rasterizer == Rasterizer::automatic && options.technique != "raymarch") {
             const std::string problem = choose_rasterizer(gpu, volume.type).problem;
@@ -252,18 +264,12 @@ struct Render : Command {
                                 gpu.info().name, problem, renderer.technique(),
                                 name_of(renderer.rasterizer())));
         }
-        frame.camera = view.camera(volume, renderer.surface_hull(frame.isovalues));
+        // One camera for all steps: none of them can leave the volume's box.
+        frame.camera = view.camera(
+            volume, steps.size() > 1 ? VoxelPoints{} : renderer.surface_hull(frame.isovalues));
 
-        std::vector<FrameStats> all_stats;
-        Image image;
-        if (repeat > 1) renderer.render(frame);
-        for (size_t i = 0; i < repeat; ++i) {
-            image = renderer.render(frame);
-            all_stats.push_back(renderer.stats());
-        }
-        write(image, volume);
-
-        RenderReport report{.output = output,
+        RenderReport report{.outputs = outputs,
+                            .time_steps = steps,
                             .size = frame.size,
                             .isovalues = frame.isovalues,
                             .technique = renderer.technique(),
@@ -272,15 +278,36 @@ struct Render : Command {
                             .device = gpu.info().name,
                             .driver = gpu.info().driver,
                             .value_range = renderer.value_range(),
-                            .seconds = seconds_since(start),
-                            .stats = median_of(all_stats),
-                            .frames = repeat,
                             .difference = std::nullopt,
                             .tolerance = tolerance};
-        if (!reference.empty()) report.difference = compare_with_reference(image);
+        render_all(renderer, volume.name, report);
+        report.seconds = seconds_since(start);
         print(report);
         const bool differs = report.difference && report.difference->pixels_over > 0;
         return print_validation(gpu) || differs ? 1 : 0;
+    }
+
+    // Every time step, `repeat` times; the last round is written.
+    void render_all(Renderer& renderer, const std::string& source, RenderReport& report) {
+        const size_t rounds = repeat > 1 ? repeat + 1 : 1;  // the first one warms up
+        Progress progress(rounds * steps.size());
+        std::vector<FrameStats> all_stats;
+        for (size_t round = 0; round < rounds; ++round) {
+            for (size_t i = 0; i < steps.size(); ++i) {
+                frame.time_step = static_cast<uint32_t>(i);
+                const Image image = renderer.render(frame);
+                if (round > 0 || rounds == 1) all_stats.push_back(renderer.stats());
+                if (round + 1 == rounds) {
+                    write(image, i, source);
+                    if (!reference.empty()) compare_with_reference(image, i, report);
+                }
+                progress.done();
+            }
+        }
+        report.frames = all_stats.size();
+        report.stats = median_of(all_stats);
+        for (const FrameStats& stats_of_frame : all_stats)
+            report.longest_wait_ms = std::max(report.longest_wait_ms, stats_of_frame.wait_ms);
     }
 
     std::string culling_of(const Renderer& renderer) const {
@@ -296,7 +323,7 @@ struct Render : Command {
             note(fmt::format("{}: 1 voxel thin along {}: no cells, so only background", volume.name,
                              "xyz"[axis]));
         }
-        if (volume.time_steps > 1) {
+        if (volume.time_steps > 1 && steps.size() == 1 && arguments.time.empty()) {
             note(fmt::format("{}: this is time step {} of 0 to {}; choose with --time", volume.name,
                              volume.time_step, volume.time_steps - 1));
         }
@@ -314,13 +341,16 @@ struct Render : Command {
         }
     }
 
-    void write(const Image& image, const Volume& volume) const {
+    void write(const Image& image, size_t index, const std::string& source) const {
+        std::string comment = fmt::format("isovalue {:.9g}", fmt::join(frame.isovalues, ", "));
+        if (steps.size() > 1) comment += fmt::format(", time step {}", steps[index]);
         const std::vector<std::pair<std::string, std::string>> text = {
             {"Software", "isorast"},
-            {"Source", std::filesystem::path(volume.name).filename().string()},
-            {"Comment", fmt::format("isovalue {:.9g}", fmt::join(frame.isovalues, ", "))}};
-        if (view.stereo.mode == StereoMode::layers) return write_layers(image, text);
-        if (output != "-") return write_png(output, image, text);
+            {"Source", std::filesystem::path(source).filename().string()},
+            {"Comment", comment}};
+        const std::string& path = outputs[index];
+        if (view.stereo.mode == StereoMode::layers) return write_layers(image, path, text);
+        if (path != "-") return write_png(path, image, text);
         const std::vector<uint8_t> bytes = encode_png(image, text);
         if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
             std::fflush(stdout)) {
@@ -329,7 +359,7 @@ struct Render : Command {
     }
 
     // picture.png: picture.left.png and picture.right.png.
-    void write_layers(const Image& image,
+    void write_layers(const Image& image, const std::string& path,
                       const std::vector<std::pair<std::string, std::string>>& text) const {
         const size_t half = image.rgba.size() / 2;
         for (const auto& [name, begin] :
@@ -337,21 +367,22 @@ struct Render : Command {
             const auto first = image.rgba.begin() + ptrdiff_t(begin);
             const Image eye{.size = {image.size.width, image.size.height / 2},
                             .rgba = {first, first + ptrdiff_t(half)}};
-            write_png(std::filesystem::path(output).replace_extension(name).string(), eye, text);
+            write_png(std::filesystem::path(path).replace_extension(name).string(), eye, text);
         }
     }
 
-    Difference compare_with_reference(const Image& image) const {
-        const Image expected = read_png(reference);
+    // The report keeps the worst difference.
+    void compare_with_reference(const Image& image, size_t index, RenderReport& report) const {
+        const Image expected = read_png(references[index]);
         const Difference difference = compare(image, expected, tolerance);
-        if (difference.pixels_over > 0) {
-            const std::string path =
-                difference_path(output == "-" ? default_output(arguments.input) : output);
-            write_png(path, difference_picture(image, expected, tolerance));
-            fmt::print(stderr, "isorast: error: {} differs: {}; see {}\n", reference,
-                       text_of(difference, image.size, tolerance), path);
-        }
-        return difference;
+        if (!report.difference || difference.pixels_over > report.difference->pixels_over)
+            report.difference = difference;
+        if (difference.pixels_over == 0) return;
+        const std::string path = difference_path(
+            output == "-" ? default_output(arguments.inputs.front(), false) : outputs[index]);
+        write_png(path, difference_picture(image, expected, tolerance));
+        fmt::print(stderr, "isorast: error: {} differs: {}; see {}\n", references[index],
+                   text_of(difference, image.size, tolerance), path);
     }
 
     void print(const RenderReport& report) const {

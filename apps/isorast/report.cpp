@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 namespace isorast::cli {
 namespace {
@@ -19,17 +20,22 @@ double median(std::vector<double> values) {
 
 FrameStats median_of(const std::vector<FrameStats>& frames) {
     FrameStats result = frames.back();
-    std::vector<double> values(frames.size());
-    const auto median_by = [&](auto&& time) {
-        std::ranges::transform(frames, values.begin(), time);
-        return median(values);
-    };
-    result.total_ms = median_by([](const FrameStats& frame) { return frame.total_ms; });
-    for (size_t pass = 0; pass < result.passes.size(); ++pass) {
-        result.passes[pass].milliseconds = median_by([&](const FrameStats& frame) {
-            return pass < frame.passes.size() ? frame.passes[pass].milliseconds : 0;
-        });
+    std::vector<double> totals, waits;
+    std::map<std::string, std::vector<double>> passes;
+    for (const FrameStats& frame : frames) {
+        totals.push_back(frame.total_ms);
+        waits.push_back(frame.wait_ms);
+        for (const PassTime& pass : frame.passes)
+            passes[pass.name].push_back(pass.milliseconds);
     }
+    result.total_ms = median(std::move(totals));
+    result.wait_ms = median(std::move(waits));
+    // In the order of the frame with the most passes: some have one that others do not need.
+    result.passes = std::ranges::max(frames, {}, [](const FrameStats& frame) {
+                        return frame.passes.size();
+                    }).passes;
+    for (PassTime& pass : result.passes)
+        pass.milliseconds = median(passes[pass.name]);
     return result;
 }
 
@@ -38,7 +44,12 @@ std::string summary(const RenderReport& report) {
     for (double isovalue : report.isovalues) {
         isovalues += fmt::format("{}{:.6g}", isovalues.empty() ? "" : ", ", isovalue);
     }
-    return fmt::format("{}  {}x{}  iso {}  {}, {} rasterizer  {}  {:.2f} s\n", report.output,
+    const std::vector<std::string>& names = report.outputs;
+    const std::string output =
+        names.size() == 1
+            ? names.front()
+            : fmt::format("{} pictures, {} to {}", names.size(), names.front(), names.back());
+    return fmt::format("{}  {}x{}  iso {}  {}, {} rasterizer  {}  {:.2f} s\n", output,
                        report.size.width, report.size.height, isovalues, report.technique,
                        report.rasterizer, report.device, report.seconds);
 }
@@ -54,6 +65,10 @@ std::string stats_table(const RenderReport& report) {
     text += fmt::format("  {:<24}{:>10.3f} ms\n", "total", stats.total_ms);
     text += fmt::format("blocks {}  active {}  drawn {}  (culling: {})\n", stats.blocks,
                         stats.blocks_active, stats.blocks_drawn, report.culling);
+    if (report.time_steps.size() > 1)
+        text += fmt::format(
+            "time steps {}  on the GPU {}  waited for {:.3f} ms (median), {:.3f} ms (longest)\n",
+            report.time_steps.size(), stats.resident_steps, stats.wait_ms, report.longest_wait_ms);
     const double share = stats.volume_bytes == 0 ? 0
                                                  : 100.0 * static_cast<double>(stats.extra_bytes) /
                                                        static_cast<double>(stats.volume_bytes);
@@ -71,7 +86,7 @@ Json json_of(const RenderReport& report) {
     for (const PassTime& pass : stats.passes) {
         passes.push_back({{"name", pass.name}, {"milliseconds", pass.milliseconds}});
     }
-    Json json{{"output", report.output},
+    Json json{{"output", report.outputs.front()},
               {"size", {report.size.width, report.size.height}},
               {"isovalues", report.isovalues},
               {"value_range", report.value_range},
@@ -91,6 +106,12 @@ Json json_of(const RenderReport& report) {
               {"volume_bytes", stats.volume_bytes},
               {"extra_bytes", stats.extra_bytes},
               {"target_bytes", stats.target_bytes}};
+    if (report.time_steps.size() > 1)
+        json.update(Json{{"outputs", report.outputs},
+                         {"time_steps", report.time_steps},
+                         {"resident_steps", stats.resident_steps},
+                         {"wait_ms", stats.wait_ms},
+                         {"longest_wait_ms", report.longest_wait_ms}});
     if (report.difference) {
         json["difference"] = cli::json_of(*report.difference, report.tolerance);
     }

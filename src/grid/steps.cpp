@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "gpu/device.h"
 #include "volume/voxels.h"
@@ -18,6 +19,7 @@ namespace {
 // A piece of the staging ring: large enough to copy fast, small enough that a frame which waits
 // behind one on the same queue does not notice.
 constexpr uint64_t PIECE_BYTES = 16u << 20;
+constexpr uint64_t MIN_SHARE = 1u << 20;  // of a piece, bytes for one thread
 
 uint64_t slice_bytes(const StepFormat& format) {
     const glm::uvec3 size = format.bricks.extent(0);
@@ -41,6 +43,30 @@ uint32_t capacity(const gpu::Device& device, const StepFormat& format, uint32_t 
     fit = std::min<uint64_t>(
         fit, device.limits().maxMemoryAllocationCount / 2 / (format.bricks.count() + 1));
     return std::min(steps, uint32_t(std::clamp<uint64_t>(fit, 2, UINT32_MAX)));
+}
+
+// Calls store(row, range) for all rows, on several threads where there is much to do: one thread
+// neither reads a file nor writes memory as fast as the device takes it.
+template <class StoreRow>
+void store_rows(uint32_t rows, uint64_t row_bytes, StoreRow&& store, StoredRange& range) {
+    const uint32_t most = std::clamp(std::thread::hardware_concurrency() / 2, 1u, 8u);
+    const auto count = uint32_t(std::clamp<uint64_t>(rows * row_bytes / MIN_SHARE, 1, most));
+    std::vector<StoredRange> ranges(count);
+    const auto store_share = [&](uint32_t share) {
+        const auto end = uint32_t(uint64_t{rows} * (share + 1) / count);
+        for (auto row = uint32_t(uint64_t{rows} * share / count); row < end; ++row)
+            store(row, ranges[share]);
+    };
+    {
+        std::vector<std::jthread> threads;
+        for (uint32_t share = 1; share < count; ++share)
+            threads.emplace_back(store_share, share);
+        store_share(0);
+    }  // joins
+    for (const StoredRange& found : ranges) {
+        range.least = std::min(range.least, found.least);
+        range.greatest = std::max(range.greatest, found.greatest);
+    }
 }
 
 bool contains(const std::vector<uint32_t>& numbers, uint32_t number) {
@@ -129,12 +155,13 @@ Step& Steps::get(uint32_t number, const std::vector<uint32_t>& in_flight) {
 }
 
 void Steps::settle() {
-    Step& step = *reading_into_;
+    bool whole = false;
     try {
-        if (reading_.get()) step.number = reading_number_;
+        whole = reading_.get();
     } catch (const std::exception&) {
-        // A step that is not asked for may fail. When it is asked for, it is read once more.
+        whole = false;  // nobody asked for this step; if one does, it is read once more
     }
+    if (whole) reading_into_->number = reading_number_;
 }
 
 void Steps::read_ahead(uint32_t number, const std::vector<uint32_t>& in_flight) {
@@ -240,12 +267,13 @@ bool Steps::upload_brick(Step& step, const Volume& volume, uint32_t brick) {
         if (cancelled_) return false;
         const uint32_t slices = std::min(slices_at_once, extent.z - z);
         std::byte* out = staging_->next();
-        for (uint32_t k = z; k < z + slices; ++k)
-            for (uint32_t j = 0; j < extent.y; ++j, out += row_bytes) {
-                const uint64_t row = uint64_t{origin.z + k} * volume.dims[1] + origin.y + j;
-                store_voxels(volume, format_.stored, row * volume.dims[0] + origin.x, extent.x, out,
-                             step.range);
-            }
+        const auto store_row = [&](uint32_t row, StoredRange& range) {
+            const uint64_t k = origin.z + z + row / extent.y, j = origin.y + row % extent.y;
+            store_voxels(volume, format_.stored,
+                         (k * volume.dims[1] + j) * volume.dims[0] + origin.x, extent.x,
+                         out + row * row_bytes, range);
+        };
+        store_rows(slices * extent.y, row_bytes, store_row, step.range);
         staging_->copy_to(step.bricks[brick], z, slices);
     }
     return true;

@@ -3,6 +3,7 @@
 #include "grid/stored.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -27,17 +28,34 @@ double extreme(const Volume& volume, bool greatest) {
     return double(best);
 }
 
+// The float whose bits, as an integer in the order of floats, are this key.
+float value_of(int32_t key) {
+    return std::bit_cast<float>(key ^ (key >> 31 & 0x7fffffff));
+}
+
+// What is not finite is replaced, and the range widened by the rest. In integers and without a
+// branch: this becomes vector instructions, as minima of floats do not. `out` is never read: memory
+// for uploads may be slow to read.
 template <class T>
 void store_as_float(const std::byte* bytes, const Stored& stored, uint64_t first, uint32_t count,
                     float* out, StoredRange& range) {
+    constexpr int32_t EXPONENT = 0x7f800000, NOT_FINITE_BITS = std::bit_cast<int32_t>(NOT_FINITE);
+    constexpr int32_t LAST = std::numeric_limits<int32_t>::max();
+    using Real = std::conditional_t<std::is_same_v<T, float>, float, double>;  // floats stay exact
+    const auto base = Real(stored.base), sign = Real(stored.sign);
+    int32_t least = LAST, greatest = -LAST;
     for (uint32_t i = 0; i < count; ++i) {
         const T raw = load_voxel<T>(bytes, first + i);
-        const float value = float((double(raw) - stored.base) * stored.sign);
-        out[i] = std::isfinite(value) ? value : NOT_FINITE;
-        if (!std::isfinite(value)) continue;
-        range.least = std::min(range.least, value);
-        range.greatest = std::max(range.greatest, value);
+        const auto bits = std::bit_cast<int32_t>(float((Real(raw) - base) * sign));
+        const int32_t bad = -int32_t((bits & EXPONENT) == EXPONENT);  // all bits, or none
+        const int32_t key = bits ^ (bits >> 31 & LAST);
+        out[i] = std::bit_cast<float>((bits & ~bad) | (NOT_FINITE_BITS & bad));
+        least = std::min(least, (key & ~bad) | (LAST & bad));
+        greatest = std::max(greatest, (key & ~bad) | (-LAST & bad));
     }
+    if (least > greatest) return;
+    range.least = std::min(range.least, value_of(least));
+    range.greatest = std::max(range.greatest, value_of(greatest));
 }
 
 template <class T>

@@ -76,9 +76,9 @@ FIELD_FUNCTION float field_length(float x, float y, float z) {
     return sqrt(squares);
 }
 
-// Solids breathe: grow by a quarter and shrink again.
+// Solids breathe: grow by a ninth and shrink again, and stay within the cube.
 FIELD_FUNCTION float field_breath(FieldMotion m) {
-    FIELD_PRECISE float scale = 1.0f - 0.1f * m.swell;
+    FIELD_PRECISE float scale = 1.0f - 0.05f * m.swell;
     return scale;
 }
 
@@ -168,13 +168,13 @@ FIELD_FUNCTION float field_noise(FieldMotion m, uint octaves, uint seed, float x
 }
 
 // A ball with a fine gyroid carved in, like a piece of coral: large empty and full parts, and much
-// detail. The ball breathes, and the gyroid travels through it.
+// detail. The ball shrinks and grows again, and the gyroid travels through it.
 FIELD_FUNCTION float field_coral(FieldMotion m, float x, float y, float z) {
     FIELD_PRECISE float a = 14.0f * (x + 1.0f) + m.phase, b = 14.0f * (y + 1.0f),
                         c = 14.0f * (z + 1.0f);
     FIELD_PRECISE float gyroid =
         field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
-    FIELD_PRECISE float inside = 0.47f - 0.5f * field_breath(m) * field_length(x, y, z);
+    FIELD_PRECISE float inside = 0.47f - (0.5f + 0.05f * m.swell) * field_length(x, y, z);
     FIELD_PRECISE float steep = 3.0f * inside;
     FIELD_PRECISE float skin = min(steep, 0.35f);
     FIELD_PRECISE float value = 0.5f + min(steep, 0.0f) + 0.22f * (0.6f * gyroid + max(skin, 0.0f));

@@ -79,7 +79,7 @@ class Usage(CommandLine):
     def test_unknown_option(self):
         self.assertIn("did you mean --azimuth?", self.isorast("render", "sphere:8", "--azimut", "3", code=2)[1])
         self.isorast("devices", "--frobnicate", code=2)
-        self.isorast("info", "sphere:8", "sphere:9", code=2)
+        self.isorast("compare", "a.png", "b.png", "c.png", code=2)
 
     def test_wrong_values(self):
         wrong = {
@@ -105,7 +105,7 @@ class Usage(CommandLine):
             "--endian": ["middle"],
             "--spacing": ["1,2", "0,1,1", "-1,1,1"],
             "--offset": ["-1", "1k"],
-            "--time": ["-1", "1.5", "4294967296"],
+            "--time": ["-1", "1.5", "4294967296", "some", "0:", "0:1:0", "2:1", "0:5:-1", "0:1:2:3", "3:x"],
             "--repeat": ["0", "x"],
             "--output": ["a.jpg", "a.exr"],
         }
@@ -324,6 +324,60 @@ class Render(CommandLine):
         self.assertEqual(size_of(self.read("other.difference.png")), (96, 64))
         self.render("sphere:16", "--zoom", "0.5", "--reference", "good.png", "--tolerance", "255")
         self.render("sphere:16", "--reference", "none.png", code=1)
+
+    def test_time_steps(self):
+        steps = "gyroid:24:steps=6"
+        found = json.loads(self.render(steps, "--iso", "0", "-o", "f{frame:3}.png", "--json")[0])
+        self.assertEqual(found["outputs"], [f"f00{step}.png" for step in range(6)])
+        self.assertEqual((found["time_steps"], found["resident_steps"]), ([0, 1, 2, 3, 4, 5], 6))
+        self.assertEqual(len({self.read(name) for name in found["outputs"]}), 6)
+        out, _ = self.render(steps, "--iso", "0", "--time", "5:1:-2", "-o", "t{time}_{frame:2}.png", "--stats")
+        self.assertIn("3 pictures, t5_00.png to t1_02.png", out)
+        self.assertIn("time steps 3", out)
+        # The same camera for any part of the series.
+        for time, picture in [(5, "t5_00.png"), (3, "t3_01.png"), (1, "t1_02.png")]:
+            self.isorast("compare", picture, f"f00{time}.png")
+        self.render(steps, "--iso", "0", "--time", "all")
+        self.assertTrue(os.path.exists(self.path("gyroid-24-steps=6_0005.png")))
+        self.render(steps, "--iso", "0", "--time", "0:2", "--repeat", "2", "-o", "r{frame:3}.png",
+                    "--reference", "f{frame:3}.png")
+        self.render(steps, "--iso", "0", "--time", "1:3", "-o", "r{frame:3}.png", "--reference", "f{frame:3}.png", code=1)
+
+    def test_one_time_step(self):
+        _, err = self.render("gyroid:24:steps=6", "--iso", "0", "-o", "first.png")
+        self.assertRegex(err, r"time step 0 of 0 to 5; choose with --time")
+        _, err = self.render("gyroid:24:steps=6", "--iso", "0", "--time", "0", "-o", "0.png")
+        self.assertEqual(err, "")
+        self.assertEqual(self.read("first.png"), self.read("0.png"))
+        self.render("gyroid:24:steps=6", "--iso", "0", "--time", "3", "-o", "3.png")
+        self.assertNotEqual(self.read("3.png"), self.read("0.png"))
+
+    def test_a_directory_and_files(self):
+        os.mkdir(self.path("run"))
+        for step in [2, 10, 1]:
+            self.write(f"run/t{step}_8x8x8_uint8.raw",
+                       bytes(255 if (x - 4) ** 2 + (y - 4) ** 2 + (z - 4) ** 2 < 2 + step else 0
+                             for z in range(8) for y in range(8) for x in range(8)))
+        words = ["--iso", "128", "--shading", "normals"]
+        self.render("run", *words, "-o", "d{frame}.png")
+        self.render("run/t1_8x8x8_uint8.raw", "run/t2_8x8x8_uint8.raw", "run/t10_8x8x8_uint8.raw", *words,
+                    "--time", "all", "-o", "f{frame}.png")
+        for frame in range(3):
+            self.assertEqual(self.read(f"d{frame}.png"), self.read(f"f{frame}.png"))
+        self.assertEqual(len({self.read(f"d{frame}.png") for frame in range(3)}), 3)
+        self.assertIn("3, this is 1 of 0 to 2", self.isorast("info", "run", "--time", "1")[0])
+        self.write("run/t3_8x8x4_uint8.raw", bytes(256))
+        _, err = self.render("run", *words, "--time", "all", "-o", "x{frame}.png", code=1)
+        self.assertRegex(err, r"\Aisorast: error: run/t3_8x8x4_uint8.raw: expected the dimensions of "
+                              r"run/t1_8x8x8_uint8.raw, 8x8x8, found 8x8x4; [^\n]+\n\Z")
+        self.assertFalse(os.path.exists(self.path("x0.png")))
+
+    def test_time_errors(self):
+        for words in [["-o", "one.png"], ["-o", "-"], ["-o", "f{frame:x}.png"], ["--reference", "one.png"]]:
+            self.render("sphere:8:steps=3", "--time", "all", *words, code=2)
+        _, err = self.render("sphere:8:steps=3", "--time", "1:3", code=1)
+        self.assertRegex(err, r"holds 3 time steps, counted from 0; --time 1:3 was asked for\n\Z")
+        self.isorast("info", "sphere:8:steps=3", "--time", "all", code=2)
 
     def test_notes(self):
         self.assertIn("1 voxel thin along y", self.render("sphere:16x1x16")[1])

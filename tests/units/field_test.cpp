@@ -73,6 +73,39 @@ TEST(Field, RangesHoldAndTheLevelIsCrossed) {
     }
 }
 
+TEST(Field, TimeGoesOnSmoothlyWithinTheRangeAndReturns) {
+    for (const std::string& name : NAMES) {
+        const Volume still = [&] {
+            Volume volume = make_procedural(name + ":24");
+            sample(volume);
+            return volume;
+        }();
+        std::vector<Volume> steps;
+        for (uint32_t step = 0; step < 60; ++step) {
+            steps.push_back(make_procedural(name + ":24:steps=60", step));
+            EXPECT_EQ(steps.back().time_step, step);
+            EXPECT_EQ(steps.back().time_steps, 60u);
+            sample(steps.back());
+        }
+        // The first step is the formula without time, bit for bit.
+        EXPECT_TRUE(std::ranges::equal(still.bytes.span(), steps[0].bytes.span())) << name;
+        const auto [lowest, highest] = field_range(still.field->kind);
+        double largest_change = 0;
+        for (uint32_t step = 0; step < 60; ++step) {
+            double change = 0;
+            for (uint32_t i = 0; i < 24; ++i) {
+                const double value = steps[step].value(i, 9, 7);
+                change += std::abs(value - steps[(step + 1) % 60].value(i, 9, 7)) / 24;
+                EXPECT_GE(value, lowest) << name;
+                EXPECT_LE(value, highest) << name;
+            }
+            largest_change = std::max(largest_change, change);
+        }
+        EXPECT_GT(largest_change, 1e-3 * (highest - lowest)) << name;
+        EXPECT_LT(largest_change, 0.06 * (highest - lowest)) << name;
+    }
+}
+
 TEST(Field, NoiseIsContinuousAndDependsOnItsSeedAndOctaves) {
     for (double x = -1; x < 1; x += 0.001)
         EXPECT_NEAR(value_of(Kind::noise, x, 0.3, -0.2), value_of(Kind::noise, x + 1e-5, 0.3, -0.2),
@@ -165,6 +198,8 @@ TEST(Field, ErrorsNameTheBadPart) {
         {"noise:64:spacing=1,2,0", "\"1,2,0\""},
         {"noise:64:spacing=1,2,nan", "\"1,2,nan\""},
         {"noise:64:spacing=1,2,inf", "\"1,2,inf\""},
+        {"noise:64:steps=0", "\"0\""},
+        {"noise:64:steps=99999", "\"99999\""},
     };
     for (const auto& [name, part] : bad) {
         try {

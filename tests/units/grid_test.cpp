@@ -134,4 +134,23 @@ TEST(Stored, NotFiniteIsOutsideOfEverything) {
     EXPECT_EQ(values[3], 1.0);
 }
 
+TEST(Stored, TheRangeIsThatOfTheFiniteFloats) {
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                inf = std::numeric_limits<float>::infinity(),
+                largest = std::numeric_limits<float>::max();
+    const auto range_of = [](const std::vector<float>& values, double slope = 1) {
+        const Volume volume = volume_of<float>(values, VoxelType::f32, slope);
+        std::vector<std::byte> bytes(volume.byte_count());
+        StoredRange range;
+        store_voxels(volume, stored_as(volume), 0, volume.dims[0], bytes.data(), range);
+        return std::pair(range.least, range.greatest);
+    };
+    EXPECT_EQ(range_of({nan, -5, 3, inf, -0.0f}), std::pair(-5.0f, 3.0f));
+    EXPECT_EQ(range_of({nan, -5, 3, inf, -0.0f}, -2), std::pair(-3.0f, 5.0f));
+    EXPECT_EQ(range_of({-1e-40f, 1e-40f, -1e-42f}), std::pair(-1e-40f, 1e-40f));
+    EXPECT_EQ(range_of({largest, -largest, -inf}), std::pair(-largest, largest));
+    const auto [least, greatest] = range_of({nan, inf, -inf});
+    EXPECT_GT(least, greatest);
+}
+
 }  // namespace

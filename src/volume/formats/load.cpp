@@ -29,20 +29,11 @@ std::vector<Reader> readers() {
     };
 }
 
-std::string known_formats() {
-    std::string text;
-    for (const Reader& reader : readers())
-        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", reader.name,
-                            fmt::join(reader.endings, " "));
-    return text;
-}
-
 Reader reader_for(const std::string& path, const LoadOptions& options) {
-    const std::string lower = lowercase(path);
     const auto table = readers();
+    const std::string_view format = format_of_ending(path);
     for (const Reader& reader : table)
-        for (const std::string_view ending : reader.endings)
-            if (lower.ends_with(ending)) return reader;
+        if (reader.name == format) return reader;
     if (options.dims || is_raw_name(path)) return {"raw", {}, "", load_raw};
     const VoxelBytes start = VoxelBytes::map(path, 0, std::min<uint64_t>(file_size(path), 16));
     const std::string_view first(reinterpret_cast<const char*>(start.span().data()),
@@ -72,11 +63,10 @@ void set_spacing(Volume& volume, std::array<double, 3> spacing) {
 }
 
 Volume load_formula(const std::string& name, const LoadOptions& options) {
-    if (options.dims || options.type || options.big_endian || options.offset || options.spacing ||
-        options.time_step)
+    if (options.dims || options.type || options.big_endian || options.offset || options.spacing)
         fail(name,
              "a formula takes all its options in its name, as in sphere:64:type=f32:spacing=1,1,2");
-    return make_procedural(name);
+    return make_procedural(name, options.time_step);
 }
 
 void refuse_raw_options(const Reader& reader, const std::string& path, const LoadOptions& options) {
@@ -86,6 +76,22 @@ void refuse_raw_options(const Reader& reader, const std::string& path, const Loa
 }
 
 }  // namespace
+
+std::string known_formats() {
+    std::string text;
+    for (const Reader& reader : readers())
+        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", reader.name,
+                            fmt::join(reader.endings, " "));
+    return text;
+}
+
+std::string_view format_of_ending(const std::string& path) {
+    const std::string lower = lowercase(path);
+    for (const Reader& reader : readers())
+        for (const std::string_view ending : reader.endings)
+            if (lower.ends_with(ending)) return reader.name;
+    return {};
+}
 
 Volume load_volume(const std::string& path, const LoadOptions& options) {
     if (is_procedural(path)) return load_formula(path, options);
@@ -99,7 +105,7 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
     try {
         Volume volume = reader.load(path, options);
         if (options.spacing) set_spacing(volume, *options.spacing);
-        check(volume);
+        if (!options.header_only) check(volume);
         return volume;
     } catch (const std::bad_alloc&) {
         fail(path, "there is not enough memory for its voxels");

@@ -186,7 +186,7 @@ Volume load_metaimage(const std::string& path, const LoadOptions& options) {
     source.big_endian = options.big_endian.value_or(
         header.flag({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}, false));
     set_header_size(source, header);
-    read_voxels(volume, source);
+    if (!options.header_only) read_voxels(volume, source);
     return volume;
 }
 

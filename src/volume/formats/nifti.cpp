@@ -198,7 +198,7 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
     } else {
         source.offset = file.offset;
     }
-    read_voxels(volume, source);
+    if (!options.header_only) read_voxels(volume, source);
     return volume;
 }
 

@@ -141,7 +141,7 @@ Volume load_nrrd(const std::string& path, const LoadOptions& options) {
         source.skip_inflated = static_cast<uint64_t>(skip);
     else if (!source.at_end)
         source.skip_bytes = static_cast<uint64_t>(skip);
-    read_voxels(volume, source);
+    if (!options.header_only) read_voxels(volume, source);
     return volume;
 }
 

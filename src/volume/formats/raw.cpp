@@ -99,9 +99,10 @@ Volume load_raw(const std::string& path, const LoadOptions& options) {
              "dimensions or as an option");
     volume.type = *type;
     set_time(volume, 1, options);
-    read_voxels(volume, {.files = {path},
-                         .big_endian = options.big_endian.value_or(false),
-                         .offset = options.offset});
+    if (!options.header_only)
+        read_voxels(volume, {.files = {path},
+                             .big_endian = options.big_endian.value_or(false),
+                             .offset = options.offset});
     return volume;
 }
 

@@ -12,6 +12,11 @@ Volume load_nrrd(const std::string& path, const LoadOptions& options);
 Volume load_metaimage(const std::string& path, const LoadOptions& options);
 Volume load_nifti(const std::string& path, const LoadOptions& options);
 
+// The format that the file's ending stands for; empty when it is none of ours.
+std::string_view format_of_ending(const std::string& path);
+// "NRRD (.nrrd .nhdr), ...".
+std::string known_formats();
+
 // Whether the file's name gives the dimensions: "_256x256x128_uint8" or "_256_256_128_1_1".
 bool is_raw_name(const std::string& path);
 

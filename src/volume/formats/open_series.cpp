@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Time series: the steps of one file, or several files, a step each.
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+
+#include "volume/formats/reader.h"
+#include "volume/text.h"
+
+namespace isorast {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_digit(char c) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+// The run of digits at the front, without leading zeros; cut off `text`.
+std::string_view take_number(std::string_view& text) {
+    size_t end = 0;
+    while (end < text.size() && is_digit(text[end]))
+        ++end;
+    std::string_view number = text.substr(0, end);
+    text.remove_prefix(end);
+    number.remove_prefix(std::min(number.find_first_not_of('0'), number.size()));
+    return number;
+}
+
+// Numbers in names count as numbers: t2 comes before t10.
+bool comes_before(std::string_view a, std::string_view b) {
+    const std::string_view whole_a = a, whole_b = b;
+    while (!a.empty() && !b.empty()) {
+        if (is_digit(a[0]) && is_digit(b[0])) {
+            const std::string_view m = take_number(a), n = take_number(b);
+            if (m.size() != n.size()) return m.size() < n.size();
+            if (m != n) return m < n;
+        } else if (a[0] != b[0]) {
+            return a[0] < b[0];
+        } else {
+            a.remove_prefix(1);
+            b.remove_prefix(1);
+        }
+    }
+    return a.empty() && b.empty() ? whole_a < whole_b : a.empty();
+}
+
+bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
+    const std::string lower = lowercase(path);
+    return std::ranges::any_of(endings,
+                               [&](std::string_view ending) { return lower.ends_with(ending); });
+}
+
+// The volume files of a folder, sorted. Where some are headers, the data files beside them are
+// theirs.
+std::vector<std::string> volume_files(const std::string& folder) {
+    std::vector<std::string> paths;
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+        const std::string name = at->path().filename().string();
+        if (name.starts_with('.') || !at->is_regular_file()) continue;
+        if (!format_of_ending(name).empty()) paths.push_back(at->path().string());
+    }
+    if (error) fail(folder, "cannot be read: {}", error.message());
+    const auto is_header = [](const std::string& path) {
+        return ends_with_any(path, {".nhdr", ".mhd", ".hdr", ".hdr.gz"});
+    };
+    if (std::ranges::any_of(paths, is_header))
+        std::erase_if(paths, [](const std::string& path) {
+            return ends_with_any(path, {".raw", ".img", ".img.gz"});
+        });
+    if (paths.empty())
+        fail(folder, "this directory holds no volume file; isorast reads {}", known_formats());
+    std::map<std::string_view, size_t> formats;
+    for (const std::string& path : paths)
+        ++formats[format_of_ending(path)];
+    if (formats.size() > 1) {
+        std::string found;
+        for (const auto& [format, count] : formats)
+            found += fmt::format("{}{} {}", found.empty() ? "" : " and ", count, format);
+        fail(folder, "expected volume files of one format, found {}; name the files", found);
+    }
+    std::ranges::sort(paths, comes_before);
+    return paths;
+}
+
+Volume load_header(const std::string& path, LoadOptions options) {
+    options.time_step = 0;
+    options.header_only = true;
+    return load_volume(path, options);
+}
+
+Series steps_of_file(const std::string& path, const LoadOptions& options) {
+    return {.name = path,
+            .steps = load_header(path, options).time_steps,
+            .load = [path, options](uint32_t step) {
+                LoadOptions at_step = options;
+                at_step.time_step = step;
+                at_step.header_only = false;
+                return load_volume(path, at_step);
+            }};
+}
+
+Series step_in_each_file(std::string name, const std::vector<std::string>& paths,
+                         LoadOptions options) {
+    const Volume first = load_header(paths[0], options);
+    for (const std::string& path : paths) {
+        const Volume header = load_header(path, options);
+        if (header.time_steps > 1)
+            fail(path, "expected one time step in each of {} files, found {} in this one",
+                 paths.size(), header.time_steps);
+        check_step(header, first);
+    }
+    options.time_step = 0;
+    options.header_only = false;
+    const auto count = static_cast<uint32_t>(paths.size());
+    return {.name = std::move(name), .steps = count, .load = [paths, options](uint32_t step) {
+                Volume volume = load_volume(paths[step], options);
+                volume.time_steps = static_cast<uint32_t>(paths.size());
+                volume.time_step = step;
+                return volume;
+            }};
+}
+
+}  // namespace
+
+Series open_series(const std::vector<std::string>& paths, const LoadOptions& options) {
+    if (paths.empty()) throw Error("series: expected a file, a directory or a formula, found none");
+    std::error_code error;
+    if (paths.size() == 1 && fs::is_directory(paths[0], error)) {
+        const auto files = volume_files(paths[0]);
+        return files.size() == 1 ? steps_of_file(files[0], options)
+                                 : step_in_each_file(paths[0], files, options);
+    }
+    return paths.size() == 1
+               ? steps_of_file(paths[0], options)
+               : step_in_each_file(fmt::format("{} to {}", paths.front(), paths.back()), paths,
+                                   options);
+}
+
+}  // namespace isorast
