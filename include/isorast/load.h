@@ -14,7 +14,6 @@ struct LoadOptions {
     uint64_t offset = 0;  // bytes to skip in a raw file
     std::optional<std::array<double, 3>> spacing;
     uint32_t time_step = 0;
-    bool header_only = false;  // leave Volume::bytes empty, and unchecked what they would be
 };
 
 // `path` is a file or a formula ("sphere:64"). Uncompressed voxels in native byte order are
@@ -25,7 +24,7 @@ Volume load_volume(const std::string& path, const LoadOptions& options = {});
 // The time steps of one file or formula ("coral:64:steps=30"); of several files, a step each; or of
 // the files in a directory, which must be of one format, in the order of the numbers in their names
 // (t2 before t10). Throws Error for a file whose header does not go with the first one's; voxels
-// are read by Series::load alone. LoadOptions::time_step and header_only do not count.
+// are read by Series::load alone. LoadOptions::time_step does not count.
 Series open_series(const std::vector<std::string>& paths, const LoadOptions& options = {});
 
 }  // namespace isorast

@@ -39,7 +39,7 @@ bool same_bits(const Image& a, const Image& b) {
 
 Frame small_frame(const Frame& frame, uint32_t step) {
     Frame f = frame;
-    f.size = {160, 120};
+    f.size = {120, 90};
     f.time_step = step;
     return f;
 }
@@ -51,9 +51,16 @@ protected:
     void expect_each_step_alone(const Series& series, RendererOptions options = {}) {
         const Volume first = series.load(0);
         const Frame f = frame(orbit(first, 30, 20), parse_isovalues("auto", first));
-        for (const std::string& technique : techniques()) {
-            if (technique == "direct" && GRAPHICS_CRASHES) continue;
+        const std::vector<std::pair<std::string, Rasterizer>> ways{
+            {"direct", Rasterizer::hardware},
+            {"direct", Rasterizer::compute},
+            {"raymarch", Rasterizer::compute}};
+        for (const auto& [technique, rasterizer] : ways) {
+            if (rasterizer == Rasterizer::hardware &&
+                (GRAPHICS_CRASHES || !gpu.info().why_not_hardware.empty()))
+                continue;
             options.technique = technique;
+            options.rasterizer = rasterizer;
             std::vector<Image> alone;
             for (uint32_t step = 0; step < series.steps; ++step)
                 alone.push_back(
@@ -81,7 +88,8 @@ private:
         Renderer renderer(gpu, series, options);
         for (const uint32_t step : order) {
             ASSERT_TRUE(same_bits(renderer.render(small_frame(f, step)), alone[step]))
-                << series.name << ", " << options.technique << ", step " << step;
+                << fmt::format("{}, {} {}, step {}", series.name, options.technique,
+                               name_of(options.rasterizer), step);
             EXPECT_LE(renderer.stats().resident_steps, options.step_bytes == TWO_STEPS ? 2 : count);
         }
         if (options.step_bytes == ALL_STEPS) {
@@ -93,19 +101,19 @@ private:
 
 TEST_F(SeriesTest, EachStepIsThatStepAlone) {
     for (const std::string name :
-         {"noise:40:octaves=3:type=u8:steps=5", "coral:36x40x30:steps=4"}) {
+         {"noise:32:octaves=3:type=u8:steps=4", "coral:28x32x24:steps=3"}) {
         const auto volumes = sampled_steps(name);
         expect_each_step_alone(series_of(volumes));
     }
 }
 
 TEST_F(SeriesTest, EachStepOfAFormulaIsThatStepAlone) {
-    expect_each_step_alone(procedural_series("coral:40:type=u16:steps=5"));
+    expect_each_step_alone(procedural_series("coral:32:type=u16:steps=4"));
 }
 
 TEST_F(SeriesTest, EachStepIsThatStepAloneInBricks) {
-    const auto volumes = sampled_steps("noise:40:octaves=3:type=u8:steps=4");
-    expect_each_step_alone(series_of(volumes), {.max_brick_side = 27});
+    const auto volumes = sampled_steps("noise:32:octaves=3:type=u8:steps=3");
+    expect_each_step_alone(series_of(volumes), {.max_brick_side = 19});
 }
 
 TEST_F(SeriesTest, TheRangeIsThatOfTheStepShown) {
@@ -182,29 +190,6 @@ TEST_F(SeriesTest, ALoopReadsOnlyWhatDoesNotFit) {
     EXPECT_LE(witness.loads - before, 4);
 }
 
-TEST_F(SeriesTest, CullingChangesNoBitWhileTimeGoesOn) {
-    if (GRAPHICS_CRASHES) GTEST_SKIP();
-    const auto volumes = sampled_steps("noise:56:octaves=3:type=u8:steps=16");
-    const Series series = series_of(volumes);
-    Renderer culled(gpu, series, {.step_bytes = TWO_STEPS}), whole(gpu, series);
-    uint64_t drawn_culled = 0, drawn_whole = 0;
-    for (uint32_t i = 0; i < 80; ++i) {
-        // A slow orbit, a still camera, one that jumps, and time that jumps.
-        const double azimuth = i < 32 ? 2 * i : i < 48 ? 64 : 90 * i;
-        const uint32_t step = i < 64 ? i % 16 : 5 * i % 16;
-        Frame f = small_frame(frame(orbit(volumes[0], azimuth, 20), {0.5}), step);
-        const Image a = culled.render(f);
-        f.culling = false;
-        ASSERT_TRUE(same_bits(a, whole.render(f))) << "frame " << i;
-        if (i >= 48) continue;
-        drawn_culled += culled.stats().blocks_drawn;
-        drawn_whole += whole.stats().blocks_drawn;
-    }
-    if (culled.technique() == "direct") {
-        EXPECT_LT(drawn_culled, drawn_whole * 19 / 20);
-    }
-}
-
 TEST_F(SeriesTest, FramesInFlightKeepTheirSteps) {
     const auto volumes = sampled_steps("noise:40:octaves=3:type=u8:steps=5");
     const Series series = series_of(volumes);
@@ -276,7 +261,7 @@ TEST_F(SeriesTest, AHostRecordsTheStepsOfASeries) {
     Gpu adopted(host);
     Renderer renderer(adopted, series_of(volumes),
                       {.technique = "raymarch", .step_bytes = TWO_STEPS});
-    const uint64_t bytes = uint64_t{4} * 160 * 120;
+    const uint64_t bytes = uint64_t{4} * 120 * 90;
     std::array<gpu::Buffer, 2> pixels;
     for (auto& buffer : pixels)
         buffer = gpu::Buffer(device, bytes, gpu::Buffer::Memory::host, "a test");
@@ -289,7 +274,7 @@ TEST_F(SeriesTest, AHostRecordsTheStepsOfASeries) {
             const RecordedFrame recorded =
                 record(renderer, commands.handle(), small_frame(f, steps[slot]), slot);
             const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                           .imageExtent = {160, 120, 1}};
+                                           .imageExtent = {120, 90, 1}};
             vkCmdCopyImageToBuffer(commands.handle(), recorded.color, VK_IMAGE_LAYOUT_GENERAL,
                                    pixels[slot].handle(), 1, &region);
             submissions.back()->submit();

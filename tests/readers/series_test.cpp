@@ -151,12 +151,38 @@ TEST(Series, HeadersAloneAreReadAtFirst) {
     const std::string cut = gzip(header.header() + std::string(100, 'x'));
     const Series series = open_series({scratch.write("cut.nii.gz", cut)});
     EXPECT_EQ(series.steps, 5u);
-    EXPECT_THROW(series.load(0), Error);
-    LoadOptions options;
-    options.header_only = true;
-    const Volume volume = load_volume(scratch.write("a.nrrd", NRRD_2X2X2), options);
-    EXPECT_EQ(volume.dims, (std::array<uint32_t, 3>{2, 2, 2}));
-    EXPECT_TRUE(volume.bytes.span().empty());
+    EXPECT_THROW(series.load(4), Error);
+}
+
+// A step of a compressed file may be read where the one before it ended, or from the start.
+TEST(Series, StepsInACompressedStream) {
+    const Scratch scratch;
+    NiftiFile header;
+    header.big_endian = true;
+    header.dim = {4, 4, 3, 2, 6, 1, 1, 1};
+    const auto values = voxels<int16_t>(size_t{24} * 6);
+    const std::string whole = header.header() + bytes_of_values(values, /* big_endian= */ true);
+    const auto expect_step = [&](const Series& series, uint32_t step) {
+        const auto begin = values.begin() + 24 * ptrdiff_t{step};
+        expect_voxels(series.load(step), std::vector<int16_t>(begin, begin + 24));
+    };
+    const Series series = open_series({scratch.write("a.nii.gz", gzip(whole))});
+    const Series copy = series;
+    for (const uint32_t step : {0u, 1u, 2u, 5u, 3u, 3u, 4u, 0u, 5u}) {
+        expect_step(series, step);
+        expect_step(copy, 5 - step);
+    }
+    // Only what is behind the cut is missing, and what follows too much is found at the end.
+    const std::string path = scratch.write("b.nii.gz", gzip(whole.substr(0, whole.size() - 50)));
+    const Series cut = open_series({path});
+    for (const uint32_t step : {0u, 3u, 4u, 1u})
+        if (step < 4) expect_step(cut, step);
+    const std::string message = message_of([&] { cut.load(5); });
+    EXPECT_TRUE(message.starts_with(path + ": expected")) << message;
+    expect_step(cut, 2);
+    const Series longer = open_series({scratch.write("c.nii.gz", gzip(whole + "more"))});
+    expect_step(longer, 4);
+    EXPECT_NE(message_of([&] { longer.load(5); }).find("found more"), std::string::npos);
 }
 
 TEST(Series, AMemberThatDiffersIsNamed) {

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstring>
 #include <filesystem>
+#include <new>
 
 #include "volume/formats/inflate.h"
 #include "volume/voxels.h"
@@ -107,6 +108,15 @@ void append_ascii(const Part& part, std::string_view text, std::vector<std::byte
     if (!next_word().empty()) fail(part.file, "expected {} numbers, found more", count);
 }
 
+std::unique_ptr<InflateStream> open_stream(const Part& part, const DataSource& source) {
+    const uint64_t size = file_size(part.file), begin = begin_of(part, source, size);
+    uint64_t expected = 0;
+    if (__builtin_add_overflow(source.skip_inflated, part.share, &expected))
+        fail(part.file, "{} bytes to skip are too many", source.skip_inflated);
+    return std::make_unique<InflateStream>(
+        part.file, VoxelBytes::map(part.file, begin, size - begin), expected);
+}
+
 void append(const Volume& volume, const DataSource& source, const Part& part,
             std::vector<std::byte>& out) {
     if (source.encoding == Encoding::raw) {
@@ -114,16 +124,15 @@ void append(const Volume& volume, const DataSource& source, const Part& part,
         out.insert(out.end(), bytes.span().begin(), bytes.span().end());
         return;
     }
-    const uint64_t size = file_size(part.file), begin = begin_of(part, source, size);
-    const VoxelBytes bytes = VoxelBytes::map(part.file, begin, size - begin);
     if (source.encoding == Encoding::compressed) {
-        uint64_t expected = 0;
-        if (__builtin_add_overflow(source.skip_inflated, part.share, &expected))
-            fail(part.file, "{} bytes to skip are too many", source.skip_inflated);
-        inflate_window(part.file, bytes.span(), expected, source.skip_inflated + part.skip,
-                       part.take, out);
+        const auto stream = open_stream(part, source);
+        stream->skip(source.skip_inflated + part.skip);
+        stream->append(part.take, out);
+        stream->finish();
         return;
     }
+    const uint64_t size = file_size(part.file), begin = begin_of(part, source, size);
+    const VoxelBytes bytes = VoxelBytes::map(part.file, begin, size - begin);
     with_type(volume.type,
               [&](auto zero) { append_ascii<decltype(zero)>(part, text_of(bytes), out); });
 }
@@ -159,20 +168,30 @@ std::vector<Part> parts_of(const DataSource& source, uint64_t share, uint64_t fi
     return parts;
 }
 
-void read_parts(Volume& volume, const DataSource& source) {
+bool is_swapped(const Volume& volume, const DataSource& source) {
+    return source.big_endian != (std::endian::native == std::endian::big) &&
+           bytes_of(volume.type) > 1 && source.encoding != Encoding::ascii;
+}
+
+// Bytes of all time steps.
+uint64_t total_bytes(const Volume& volume) {
     const uint64_t step = checked_byte_count(volume);
     uint64_t total = 0;
     if (__builtin_mul_overflow(step, volume.time_steps, &total) || total > INT64_MAX)
         fail(volume.name, "{} time steps of {} bytes are more than 63 bits can count",
              volume.time_steps, step);
+    return total;
+}
+
+void read_parts(Volume& volume, const DataSource& source) {
+    const uint64_t total = total_bytes(volume), step = volume.byte_count();
     const uint64_t count = source.files.size();
     if (count == 0) fail(volume.name, "the header names no data file");
     if (total % count != 0 || (total / count) % bytes_of(volume.type) != 0)
         fail(volume.name, "{} bytes cannot lie in {} data files of equal size", total, count);
     const auto parts = parts_of(source, total / count, step * volume.time_step, step);
 
-    const bool swapped = source.big_endian != (std::endian::native == std::endian::big) &&
-                         bytes_of(volume.type) > 1 && source.encoding != Encoding::ascii;
+    const bool swapped = is_swapped(volume, source);
     if (source.encoding == Encoding::raw && parts.size() == 1 && !swapped) {
         volume.bytes = map_raw(volume, source, parts[0]);
         return;
@@ -214,12 +233,55 @@ void set_time(Volume& volume, uint64_t steps, const LoadOptions& options) {
     volume.time_step = options.time_step;
 }
 
+// What is wrong with a data file is wrong with the file that the user named.
+[[noreturn]] void rethrow_for(const Volume& volume, const Error& error) {
+    if (std::string_view(error.what()).starts_with(volume.name)) throw error;
+    fail(volume.name, "{}", error.what());
+}
+
 void read_voxels(Volume& volume, const DataSource& source) try {
     read_parts(volume, source);
 } catch (const Error& error) {
-    // What is wrong with a data file is wrong with the file that the user named.
-    if (std::string_view(error.what()).starts_with(volume.name)) throw;
-    fail(volume.name, "{}", error.what());
+    rethrow_for(volume, error);
+} catch (const std::bad_alloc&) {
+    fail(volume.name, "there is not enough memory for its voxels");
+}
+
+StepReader::StepReader(const Volume& header, DataSource source)
+    : header_(header_of(header)), source_(std::move(source)) {}
+StepReader::StepReader(const StepReader& other) : StepReader(other.header_, other.source_) {}
+StepReader::StepReader(StepReader&&) noexcept = default;
+StepReader::~StepReader() = default;
+
+Volume StepReader::operator()(uint32_t step) {
+    Volume volume = header_of(header_);
+    volume.time_step = step;
+    const bool in_stream = source_.encoding == Encoding::compressed && source_.files.size() == 1;
+    if (in_stream && volume.time_steps > 1)
+        inflate_step(volume);
+    else
+        read_voxels(volume, source_);
+    check(volume);
+    return volume;
+}
+
+void StepReader::inflate_step(Volume& volume) try {
+    const Part whole{source_.files[0], total_bytes(volume), 0, 0};
+    const uint64_t bytes = volume.byte_count();
+    const uint64_t first = source_.skip_inflated + bytes * volume.time_step;
+    if (!stream_ || stream_->position() > first) stream_ = open_stream(whole, source_);
+    std::vector<std::byte> voxels;
+    stream_->skip(first - stream_->position());
+    stream_->append(bytes, voxels);
+    if (volume.time_step + 1 == volume.time_steps) stream_->finish();
+    if (is_swapped(volume, source_)) swap_bytes(volume.type, voxels);
+    volume.bytes = VoxelBytes::own(std::move(voxels));
+} catch (const Error& error) {
+    stream_.reset();
+    rethrow_for(volume, error);
+} catch (const std::bad_alloc&) {
+    stream_.reset();
+    fail(volume.name, "there is not enough memory for its voxels");
 }
 
 std::string beside(const std::string& header, std::string_view name) {

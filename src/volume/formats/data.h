@@ -3,6 +3,8 @@
 #pragma once
 #include <isorast/load.h>
 
+#include <memory>
+
 #include "volume/text.h"
 
 namespace isorast {
@@ -33,6 +35,26 @@ void set_time(Volume& volume, uint64_t steps, const LoadOptions& options);
 // Fills volume.bytes for its dims, type and time step: mapped where the file holds just these
 // bytes, else decoded. Throws Error unless the files hold exactly the voxels of all time steps.
 void read_voxels(Volume& volume, const DataSource& source);
+
+class InflateStream;
+
+// Reads the time steps of a file in any order, each as read_voxels() does. Where they lie in one
+// compressed stream it goes on behind the last one, and only for an earlier step begins at the
+// start again. A copy begins at the start, too.
+class StepReader {
+public:
+    StepReader(const Volume& header, DataSource source);
+    StepReader(const StepReader& other);
+    StepReader(StepReader&&) noexcept;
+    ~StepReader();
+    Volume operator()(uint32_t step);
+
+private:
+    void inflate_step(Volume& volume);
+    Volume header_;
+    DataSource source_;
+    std::unique_ptr<InflateStream> stream_;
+};
 
 // The path of a data file that a header names: relative to the header's folder.
 std::string beside(const std::string& header, std::string_view name);

@@ -15,7 +15,9 @@ namespace {
 constexpr uint64_t PIECE = 64 << 20;      // most bytes that zlib is handed at once
 constexpr uint64_t HIGHEST_RATIO = 1032;  // of deflate: 258 bytes for two bits
 
-class Inflater {
+}  // namespace
+
+class InflateStream::Inflater {
 public:
     Inflater(const std::string& name, std::span<const std::byte> in) : name_(name), in_(in) {
         constexpr int gzip_or_zlib = 15 + 32;
@@ -75,39 +77,47 @@ private:
     bool ended_ = false;
 };
 
-}  // namespace
+InflateStream::InflateStream(std::string name, VoxelBytes compressed, uint64_t expected)
+    : name_(std::move(name)), compressed_(std::move(compressed)), expected_(expected) {
+    const uint64_t size = compressed_.span().size();
+    if (expected / HIGHEST_RATIO > size)
+        fail(name_, "expected {} bytes, but {} compressed bytes cannot hold so many", expected,
+             size);
+    inflater_ = std::make_unique<Inflater>(name_, compressed_.span());
+}
 
-void inflate_window(const std::string& name, std::span<const std::byte> compressed,
-                    uint64_t expected, uint64_t skip, uint64_t take, std::vector<std::byte>& out) {
-    if (expected / HIGHEST_RATIO > compressed.size())
-        fail(name, "expected {} bytes, but {} compressed bytes cannot hold so many", expected,
-             compressed.size());
-    Inflater inflater(name, compressed);
-    uint64_t produced = 0;
-    const auto require = [&](uint64_t got, uint64_t wanted) {
-        produced += got;
-        if (got < wanted)
-            fail(name, "expected {} bytes in the compressed data, found {}", expected, produced);
-    };
+InflateStream::~InflateStream() = default;
+
+void InflateStream::require(uint64_t got, uint64_t wanted) {
+    position_ += got;
+    if (got < wanted)
+        fail(name_, "expected {} bytes in the compressed data, found {}", expected_, position_);
+}
+
+void InflateStream::skip(uint64_t count) {
     std::vector<std::byte> scratch(64 << 10);
-    const auto discard = [&](uint64_t count) {
-        while (count > 0) {
-            const uint64_t piece = std::min<uint64_t>(count, scratch.size());
-            require(inflater.read({scratch.data(), piece}), piece);
-            count -= piece;
-        }
-    };
-    discard(skip);
-    for (uint64_t left = take; left > 0;) {
-        const uint64_t piece = std::min(left, std::max<uint64_t>(PIECE, out.size()));
+    while (count > 0) {
+        const uint64_t piece = std::min<uint64_t>(count, scratch.size());
+        require(inflater_->read({scratch.data(), piece}), piece);
+        count -= piece;
+    }
+}
+
+void InflateStream::append(uint64_t count, std::vector<std::byte>& out) {
+    while (count > 0) {
+        const uint64_t piece = std::min(count, std::max<uint64_t>(PIECE, out.size()));
         const size_t start = out.size();
         out.resize(start + piece);
-        require(inflater.read({out.data() + start, piece}), piece);
-        left -= piece;
+        require(inflater_->read({out.data() + start, piece}), piece);
+        count -= piece;
     }
-    discard(expected - skip - take);
-    if (inflater.read({scratch.data(), 1}) != 0)
-        fail(name, "expected {} bytes in the compressed data, found more", expected);
+}
+
+void InflateStream::finish() {
+    skip(expected_ - position_);
+    std::byte more{};
+    if (inflater_->read({&more, 1}) != 0)
+        fail(name_, "expected {} bytes in the compressed data, found more", expected_);
 }
 
 }  // namespace isorast

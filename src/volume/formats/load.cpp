@@ -4,7 +4,6 @@
 #include <isorast/load.h>
 
 #include <algorithm>
-#include <new>
 
 #include "volume/formats/data.h"
 #include "volume/formats/reader.h"
@@ -16,16 +15,16 @@ struct Reader {
     std::string_view name;
     std::vector<std::string_view> endings;  // lower case
     std::string_view magic;                 // first bytes; empty: none are typical
-    Volume (*load)(const std::string&, const LoadOptions&);
+    OpenedFile (*open)(const std::string&, const LoadOptions&);
 };
 
 // Tried in this order.
 std::vector<Reader> readers() {
     return {
-        {"NRRD", {".nrrd", ".nhdr"}, "NRRD000", load_nrrd},
-        {"MetaImage", {".mha", ".mhd"}, "ObjectType", load_metaimage},
-        {"NIfTI", {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}, "", load_nifti},
-        {"raw", {".raw"}, "", load_raw},
+        {"NRRD", {".nrrd", ".nhdr"}, "NRRD000", open_nrrd},
+        {"MetaImage", {".mha", ".mhd"}, "ObjectType", open_metaimage},
+        {"NIfTI", {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}, "", open_nifti},
+        {"raw", {".raw"}, "", open_raw},
     };
 }
 
@@ -34,7 +33,7 @@ Reader reader_for(const std::string& path, const LoadOptions& options) {
     const std::string_view format = format_of_ending(path);
     for (const Reader& reader : table)
         if (reader.name == format) return reader;
-    if (options.dims || is_raw_name(path)) return {"raw", {}, "", load_raw};
+    if (options.dims || is_raw_name(path)) return {"raw", {}, "", open_raw};
     const VoxelBytes start = VoxelBytes::map(path, 0, std::min<uint64_t>(file_size(path), 16));
     const std::string_view first(reinterpret_cast<const char*>(start.span().data()),
                                  start.span().size());
@@ -70,7 +69,7 @@ Volume load_formula(const std::string& name, const LoadOptions& options) {
 }
 
 void refuse_raw_options(const Reader& reader, const std::string& path, const LoadOptions& options) {
-    if (reader.load != load_raw && (options.dims || options.type || options.offset != 0))
+    if (reader.open != open_raw && (options.dims || options.type || options.offset != 0))
         fail(path, "dimensions, type and offset are options for raw files; {} files give their own",
              reader.name);
 }
@@ -93,8 +92,7 @@ std::string_view format_of_ending(const std::string& path) {
     return {};
 }
 
-Volume load_volume(const std::string& path, const LoadOptions& options) {
-    if (is_procedural(path)) return load_formula(path, options);
+OpenedFile open_file(const std::string& path, const LoadOptions& options) {
     try {
         file_size(path);
     } catch (const Error& error) {
@@ -102,14 +100,17 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
     }
     const Reader reader = reader_for(path, options);
     refuse_raw_options(reader, path, options);
-    try {
-        Volume volume = reader.load(path, options);
-        if (options.spacing) set_spacing(volume, *options.spacing);
-        if (!options.header_only) check(volume);
-        return volume;
-    } catch (const std::bad_alloc&) {
-        fail(path, "there is not enough memory for its voxels");
-    }
+    OpenedFile file = reader.open(path, options);
+    if (options.spacing) set_spacing(file.volume, *options.spacing);
+    return file;
+}
+
+Volume load_volume(const std::string& path, const LoadOptions& options) {
+    if (is_procedural(path)) return load_formula(path, options);
+    OpenedFile file = open_file(path, options);
+    read_voxels(file.volume, file.source);
+    check(file.volume);
+    return std::move(file.volume);
 }
 
 }  // namespace isorast

@@ -163,7 +163,7 @@ void set_header_size(DataSource& source, const MetaHeader& header) {
 
 }  // namespace
 
-Volume load_metaimage(const std::string& path, const LoadOptions& options) {
+OpenedFile open_metaimage(const std::string& path, const LoadOptions& options) {
     const VoxelBytes file = VoxelBytes::map(path, 0, file_size(path));
     const MetaHeader header =
         parse_header(path, {reinterpret_cast<const char*>(file.span().data()), file.span().size()});
@@ -186,8 +186,7 @@ Volume load_metaimage(const std::string& path, const LoadOptions& options) {
     source.big_endian = options.big_endian.value_or(
         header.flag({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}, false));
     set_header_size(source, header);
-    if (!options.header_only) read_voxels(volume, source);
-    return volume;
+    return {std::move(volume), std::move(source)};
 }
 
 }  // namespace isorast

@@ -174,7 +174,7 @@ uint32_t side(const nifti_image& image, int64_t axis) {
 
 }  // namespace
 
-Volume load_nifti(const std::string& path, const LoadOptions& options) {
+OpenedFile open_nifti(const std::string& path, const LoadOptions& options) {
     if (options.big_endian)
         fail(path, "NIfTI files know their byte order; leave out the endian option");
     const NiftiFile file = open_nifti(path);
@@ -198,8 +198,7 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
     } else {
         source.offset = file.offset;
     }
-    if (!options.header_only) read_voxels(volume, source);
-    return volume;
+    return {std::move(volume), std::move(source)};
 }
 
 }  // namespace isorast

@@ -117,7 +117,7 @@ std::string_view NrrdHeader::required(const std::string& field) const {
     return *value;
 }
 
-Volume load_nrrd(const std::string& path, const LoadOptions& options) {
+OpenedFile open_nrrd(const std::string& path, const LoadOptions& options) {
     const VoxelBytes file = VoxelBytes::map(path, 0, file_size(path));
     const NrrdHeader header =
         parse_header(path, {reinterpret_cast<const char*>(file.span().data()), file.span().size()});
@@ -141,8 +141,7 @@ Volume load_nrrd(const std::string& path, const LoadOptions& options) {
         source.skip_inflated = static_cast<uint64_t>(skip);
     else if (!source.at_end)
         source.skip_bytes = static_cast<uint64_t>(skip);
-    if (!options.header_only) read_voxels(volume, source);
-    return volume;
+    return {std::move(volume), std::move(source)};
 }
 
 }  // namespace isorast

@@ -85,35 +85,31 @@ std::vector<std::string> volume_files(const std::string& folder) {
     return paths;
 }
 
-Volume load_header(const std::string& path, LoadOptions options) {
-    options.time_step = 0;
-    options.header_only = true;
-    return load_volume(path, options);
+Series steps_of_file(const std::string& path, const LoadOptions& options) {
+    if (is_procedural(path)) {
+        load_volume(path, options);  // or throws for options that formulas do not take
+        return procedural_series(path);
+    }
+    const OpenedFile file = open_file(path, options);
+    return {.name = path,
+            .steps = file.volume.time_steps,
+            .load = StepReader(file.volume, file.source)};
 }
 
-Series steps_of_file(const std::string& path, const LoadOptions& options) {
-    return {.name = path,
-            .steps = load_header(path, options).time_steps,
-            .load = [path, options](uint32_t step) {
-                LoadOptions at_step = options;
-                at_step.time_step = step;
-                at_step.header_only = false;
-                return load_volume(path, at_step);
-            }};
+Volume header_at(const std::string& path, const LoadOptions& options) {
+    return is_procedural(path) ? load_volume(path, options) : open_file(path, options).volume;
 }
 
 Series step_in_each_file(std::string name, const std::vector<std::string>& paths,
-                         LoadOptions options) {
-    const Volume first = load_header(paths[0], options);
+                         const LoadOptions& options) {
+    const Volume first = header_at(paths[0], options);
     for (const std::string& path : paths) {
-        const Volume header = load_header(path, options);
+        const Volume header = header_at(path, options);
         if (header.time_steps > 1)
             fail(path, "expected one time step in each of {} files, found {} in this one",
                  paths.size(), header.time_steps);
         check_step(header, first);
     }
-    options.time_step = 0;
-    options.header_only = false;
     const auto count = static_cast<uint32_t>(paths.size());
     return {.name = std::move(name), .steps = count, .load = [paths, options](uint32_t step) {
                 Volume volume = load_volume(paths[step], options);
@@ -127,16 +123,15 @@ Series step_in_each_file(std::string name, const std::vector<std::string>& paths
 
 Series open_series(const std::vector<std::string>& paths, const LoadOptions& options) {
     if (paths.empty()) throw Error("series: expected a file, a directory or a formula, found none");
+    LoadOptions from_start = options;
+    from_start.time_step = 0;
     std::error_code error;
-    if (paths.size() == 1 && fs::is_directory(paths[0], error)) {
-        const auto files = volume_files(paths[0]);
-        return files.size() == 1 ? steps_of_file(files[0], options)
-                                 : step_in_each_file(paths[0], files, options);
-    }
-    return paths.size() == 1
-               ? steps_of_file(paths[0], options)
-               : step_in_each_file(fmt::format("{} to {}", paths.front(), paths.back()), paths,
-                                   options);
+    const bool folder = paths.size() == 1 && fs::is_directory(paths[0], error);
+    const std::vector<std::string> files = folder ? volume_files(paths[0]) : paths;
+    if (files.size() == 1) return steps_of_file(files[0], from_start);
+    return step_in_each_file(
+        folder ? paths[0] : fmt::format("{} to {}", files.front(), files.back()), files,
+        from_start);
 }
 
 }  // namespace isorast

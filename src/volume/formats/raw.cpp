@@ -73,7 +73,7 @@ bool is_raw_name(const std::string& path) {
     return parse_name(path).has_value();
 }
 
-Volume load_raw(const std::string& path, const LoadOptions& options) {
+OpenedFile open_raw(const std::string& path, const LoadOptions& options) {
     Volume volume;
     volume.name = path;
     const NamedLayout named = parse_name(path).value_or(NamedLayout{});
@@ -99,11 +99,10 @@ Volume load_raw(const std::string& path, const LoadOptions& options) {
              "dimensions or as an option");
     volume.type = *type;
     set_time(volume, 1, options);
-    if (!options.header_only)
-        read_voxels(volume, {.files = {path},
-                             .big_endian = options.big_endian.value_or(false),
-                             .offset = options.offset});
-    return volume;
+    return {std::move(volume),
+            {.files = {path},
+             .big_endian = options.big_endian.value_or(false),
+             .offset = options.offset}};
 }
 
 }  // namespace isorast

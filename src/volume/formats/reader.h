@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: MIT
-// What every reader offers to the table in load.cpp. A reader sets dims, type, bytes and whatever
-// the file says about the world, values and time; load_volume adds the name, the spacing asked for,
-// and the final check.
+// What every reader offers to the table in load.cpp. A reader sets dims, type and whatever the file
+// says about the world, values and time, and where the voxels lie; load_volume reads these, adds
+// the spacing asked for, and the final check.
 #pragma once
-#include <isorast/load.h>
+#include "volume/formats/data.h"
 
 namespace isorast {
 
-Volume load_raw(const std::string& path, const LoadOptions& options);
-Volume load_nrrd(const std::string& path, const LoadOptions& options);
-Volume load_metaimage(const std::string& path, const LoadOptions& options);
-Volume load_nifti(const std::string& path, const LoadOptions& options);
+// A file whose header has been read: its Volume without voxels, and where these lie.
+struct OpenedFile {
+    Volume volume;
+    DataSource source;
+};
+
+OpenedFile open_raw(const std::string& path, const LoadOptions& options);
+OpenedFile open_nrrd(const std::string& path, const LoadOptions& options);
+OpenedFile open_metaimage(const std::string& path, const LoadOptions& options);
+OpenedFile open_nifti(const std::string& path, const LoadOptions& options);
+
+// Any file by the reader that takes it, with the spacing of the options.
+OpenedFile open_file(const std::string& path, const LoadOptions& options);
 
 // The format that the file's ending stands for; empty when it is none of ours.
 std::string_view format_of_ending(const std::string& path);
