@@ -27,6 +27,7 @@ using std::sqrt;
 
 const uint FIELD_SPHERE = 0u, FIELD_TORUS = 1u, FIELD_GYROID = 2u, FIELD_MARSCHNER_LOBB = 3u;
 const uint FIELD_NOISE = 4u, FIELD_CORAL = 5u;
+const uint FIELD_HEAD = 6u, FIELD_VESSELS = 7u, FIELD_BONE = 8u;
 
 const float FIELD_PI = 3.14159265358979f;
 
@@ -92,13 +93,18 @@ FIELD_FUNCTION float field_torus(FieldMotion m, float x, float y, float z) {
     return 0.25f - field_length(field_length(a, b, 0.0f) - 0.6f, c, 0.0f);
 }
 
+// Waves in three directions, -1.5 to 1.5; arguments in radians.
+FIELD_FUNCTION float field_waves(float a, float b, float c) {
+    FIELD_PRECISE float sum =
+        field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
+    return sum;
+}
+
 // Waves travel: along x.
 FIELD_FUNCTION float field_gyroid(FieldMotion m, float x, float y, float z) {
     FIELD_PRECISE float a = 2.0f * FIELD_PI * x + m.phase;
     FIELD_PRECISE float b = 2.0f * FIELD_PI * y, c = 2.0f * FIELD_PI * z;
-    FIELD_PRECISE float sum =
-        field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
-    return sum;
+    return field_waves(a, b, c);
 }
 
 // Marschner & Lobb, "An evaluation of reconstruction filters for volume rendering", 1994,
@@ -172,12 +178,73 @@ FIELD_FUNCTION float field_noise(FieldMotion m, uint octaves, uint seed, float x
 FIELD_FUNCTION float field_coral(FieldMotion m, float x, float y, float z) {
     FIELD_PRECISE float a = 14.0f * (x + 1.0f) + m.phase, b = 14.0f * (y + 1.0f),
                         c = 14.0f * (z + 1.0f);
-    FIELD_PRECISE float gyroid =
-        field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
+    FIELD_PRECISE float gyroid = field_waves(a, b, c);
     FIELD_PRECISE float inside = 0.47f - (0.5f + 0.05f * m.swell) * field_length(x, y, z);
     FIELD_PRECISE float steep = 3.0f * inside;
     FIELD_PRECISE float skin = min(steep, 0.35f);
     FIELD_PRECISE float value = 0.5f + min(steep, 0.0f) + 0.22f * (0.6f * gyroid + max(skin, 0.0f));
+    return min(max(value, 0.0f), 1.0f);
+}
+
+// From 0 to 1 while `t` goes from 0 to `width`.
+FIELD_FUNCTION float field_ramp(float t, float width) {
+    FIELD_PRECISE float ramp = t / width;
+    return min(max(ramp, 0.0f), 1.0f);
+}
+
+// Shells, as a CT of a head has them: skin (0.3) around a skull (1) with sockets, around a folded
+// brain (to 0.65). The face looks along -y. In time the folds travel.
+FIELD_FUNCTION float field_head(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float a = 1.25f * x, b = 1.05f * y, c = 1.2f * z - 0.15f;
+    FIELD_PRECISE float lumps = 0.06f * field_value_noise(5.0f * x, 5.0f * y, 5.0f * z, 1u);
+    FIELD_PRECISE float depth = 0.97f - field_length(a, b, c) - lumps;
+    // The jaw, and what is hollow: two eyes and the nose.
+    FIELD_PRECISE float eye = max(x, -x) - 0.3f, front = y + 0.88f;
+    FIELD_PRECISE float jaw = 0.62f - field_length(1.3f * x, 1.05f * y + 0.35f, z + 0.5f) - lumps;
+    FIELD_PRECISE float sockets = field_length(eye, 0.7f * front, z + 0.02f) - 0.19f;
+    FIELD_PRECISE float nose = field_length(1.4f * x, 0.6f * front, z + 0.34f) - 0.13f;
+    FIELD_PRECISE float outer = max(depth, jaw);
+    FIELD_PRECISE float hollow = min(sockets, nose);
+    FIELD_PRECISE float folds =
+        0.5f + 0.15f * field_waves(28.0f * x + 40.0f * lumps + m.phase, 28.0f * y, 28.0f * z);
+    FIELD_PRECISE float skin = 0.3f * field_ramp(outer, 0.05f);
+    FIELD_PRECISE float bone = field_ramp(outer - 0.06f, 0.04f) - field_ramp(outer - 0.14f, 0.04f);
+    FIELD_PRECISE float brain = folds * field_ramp(depth - 0.2f, 0.04f);
+    return max(skin, max(bone * field_ramp(hollow, 0.04f), brain));
+}
+
+// Sparse tubes: the curves along which two smooth random fields are both zero. In time
+// the fields shift.
+FIELD_FUNCTION float field_vessels(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float far = field_length(x, y, z) - 0.75f;
+    FIELD_PRECISE float tubes = 0.0f, frequency = 2.5f, thin = 11.0f;
+    for (uint level = 0u; level < 2u; ++level) {
+        FIELD_PRECISE float a = frequency * x + m.swing, b = frequency * y + m.swell,
+                            c = frequency * z;
+        FIELD_PRECISE float u = field_value_noise(a, b, c, 3u + level) - 0.5f;
+        FIELD_PRECISE float v = field_value_noise(a + 0.5f, b + 0.5f, c + 0.5f, 7u + level) - 0.5f;
+        FIELD_PRECISE float tube = 1.0f - thin * field_length(u, v, 0.0f);
+        tubes = max(tubes, tube);
+        frequency = 2.0f * frequency;
+    }
+    FIELD_PRECISE float value = tubes - 4.0f * max(far, 0.0f);
+    return min(max(value, 0.0f), 1.0f);
+}
+
+// Soft tissue with much noise (0.3 to 0.5) around bone: a hard shell filled with struts (to 1).
+// In time the struts travel.
+FIELD_FUNCTION float field_bone(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float depth = 0.95f - field_length(1.05f * x, 1.2f * y, 1.05f * z);
+    FIELD_PRECISE float a = 130.0f * (x + 1.0f), b = 130.0f * (y + 1.0f), c = 130.0f * (z + 1.0f);
+    FIELD_PRECISE float noise = field_value_noise(a, b, c, 1u) - 0.5f;
+    FIELD_PRECISE float bend = 3.0f * field_value_noise(4.0f * x, 4.0f * y, 4.0f * z, 2u);
+    FIELD_PRECISE float struts =
+        field_waves(24.0f * x + bend + m.phase, 24.0f * y, 24.0f * z + bend) - 0.5f;
+    FIELD_PRECISE float gaps = field_ramp(bend - 1.5f, 0.1f);
+    FIELD_PRECISE float shell = field_ramp(depth - 0.2f, 0.03f) - field_ramp(depth - 0.26f, 0.03f);
+    FIELD_PRECISE float inside = field_ramp(depth - 0.22f, 0.03f) * field_ramp(struts, 0.3f);
+    FIELD_PRECISE float tissue = (0.4f + 0.25f * noise) * field_ramp(depth, 0.04f);
+    FIELD_PRECISE float value = tissue + 0.6f * max(shell * gaps, inside);
     return min(max(value, 0.0f), 1.0f);
 }
 
@@ -188,7 +255,10 @@ FIELD_FUNCTION float field_value(FieldMotion m, uint kind, uint octaves, uint se
     if (kind == FIELD_GYROID) return field_gyroid(m, x, y, z);
     if (kind == FIELD_MARSCHNER_LOBB) return field_marschner_lobb(m, x, y, z);
     if (kind == FIELD_NOISE) return field_noise(m, octaves, seed, x, y, z);
-    return field_coral(m, x, y, z);
+    if (kind == FIELD_CORAL) return field_coral(m, x, y, z);
+    if (kind == FIELD_HEAD) return field_head(m, x, y, z);
+    if (kind == FIELD_VESSELS) return field_vessels(m, x, y, z);
+    return field_bone(m, x, y, z);
 }
 
 // Everything that sampling a field into a volume needs, on either side; scalar layout, 60 bytes.
