@@ -186,65 +186,77 @@ FIELD_FUNCTION float field_coral(FieldMotion m, float x, float y, float z) {
     return min(max(value, 0.0f), 1.0f);
 }
 
-// From 0 to 1 while `t` goes from 0 to `width`.
-FIELD_FUNCTION float field_ramp(float t, float width) {
-    FIELD_PRECISE float ramp = t / width;
+// From 0 to 1, `steepness` for each unit of t, from t = 0 on.
+FIELD_FUNCTION float field_ramp(float t, float steepness) {
+    FIELD_PRECISE float ramp = t * steepness;
     return min(max(ramp, 0.0f), 1.0f);
 }
 
-// Shells, as a CT of a head has them: skin (0.3) around a skull (1) with sockets, around a folded
-// brain (to 0.65). The face looks along -y. In time the folds travel.
-FIELD_FUNCTION float field_head(FieldMotion m, float x, float y, float z) {
-    FIELD_PRECISE float a = 1.25f * x, b = 1.05f * y, c = 1.2f * z - 0.15f;
-    FIELD_PRECISE float lumps = 0.06f * field_value_noise(5.0f * x, 5.0f * y, 5.0f * z, 1u);
-    FIELD_PRECISE float depth = 0.97f - field_length(a, b, c) - lumps;
-    // The jaw, and what is hollow: two eyes and the nose.
-    FIELD_PRECISE float eye = max(x, -x) - 0.3f, front = y + 0.88f;
-    FIELD_PRECISE float jaw = 0.62f - field_length(1.3f * x, 1.05f * y + 0.35f, z + 0.5f) - lumps;
-    FIELD_PRECISE float sockets = field_length(eye, 0.7f * front, z + 0.02f) - 0.19f;
-    FIELD_PRECISE float nose = field_length(1.4f * x, 0.6f * front, z + 0.34f) - 0.13f;
-    FIELD_PRECISE float outer = max(depth, jaw);
-    FIELD_PRECISE float hollow = min(sockets, nose);
-    FIELD_PRECISE float folds =
-        0.5f + 0.15f * field_waves(28.0f * x + 40.0f * lumps + m.phase, 28.0f * y, 28.0f * z);
-    FIELD_PRECISE float skin = 0.3f * field_ramp(outer, 0.05f);
-    FIELD_PRECISE float bone = field_ramp(outer - 0.06f, 0.04f) - field_ramp(outer - 0.14f, 0.04f);
-    FIELD_PRECISE float brain = folds * field_ramp(depth - 0.2f, 0.04f);
-    return max(skin, max(bone * field_ramp(hollow, 0.04f), brain));
+// Value noise without octaves, of so many cells a unit of length.
+FIELD_FUNCTION float field_bumps(float frequency, float x, float y, float z, uint seed) {
+    FIELD_PRECISE float a = frequency * x, b = frequency * y, c = frequency * z;
+    return field_value_noise(a, b, c, seed);
 }
 
-// Sparse tubes: the curves along which two smooth random fields are both zero. In time
+// The depth below the surface of an ellipsoid, whose radii are 1 over `sx`, `sy` and `sz`.
+FIELD_FUNCTION float field_below(float radius, float sx, float x, float sy, float y, float sz,
+                                 float z) {
+    FIELD_PRECISE float a = sx * x, b = sy * y, c = sz * z;
+    FIELD_PRECISE float below = radius - field_length(a, b, c);
+    return below;
+}
+
+// Shells, as a CT of a head has them: skin (0.3) around a skull (1) with sockets and a jaw, around
+// a folded brain (to 0.65). The face looks along -y. In time the folds travel.
+FIELD_FUNCTION float field_head(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float front = y + 0.88f;
+    FIELD_PRECISE float lumps = 0.06f * field_bumps(5.0f, x, y, z, 1u);
+    FIELD_PRECISE float cranium = field_below(0.97f, 1.25f, x, 1.05f, y, 1.2f, z - 0.125f) - lumps;
+    FIELD_PRECISE float jaw = field_below(0.62f, 1.3f, x, 1.05f, y + 0.33f, 1.0f, z + 0.5f) - lumps;
+    FIELD_PRECISE float eyes =
+        field_below(0.19f, 1.0f, max(x, -x) - 0.3f, 0.7f, front, 1.0f, z + 0.02f);
+    FIELD_PRECISE float nose = field_below(0.13f, 1.4f, x, 0.6f, front, 1.0f, z + 0.34f);
+    FIELD_PRECISE float depth = max(cranium, jaw), hollow = max(eyes, nose);
+    FIELD_PRECISE float a = 28.0f * x + 40.0f * lumps + m.phase, b = 28.0f * y, c = 28.0f * z;
+    FIELD_PRECISE float folds = 0.5f + 0.15f * field_waves(a, b, c);
+    FIELD_PRECISE float skin = 0.3f * field_ramp(depth, 20.0f);
+    FIELD_PRECISE float bone = field_ramp(depth - 0.06f, 25.0f) - field_ramp(depth - 0.14f, 25.0f);
+    FIELD_PRECISE float skull = bone * field_ramp(-hollow, 25.0f);
+    FIELD_PRECISE float brain = folds * field_ramp(cranium - 0.2f, 25.0f);
+    return max(skin, max(skull, brain));
+}
+
+// Sparse tubes in a ball: the curves along which two smooth random fields are both zero. In time
 // the fields shift.
 FIELD_FUNCTION float field_vessels(FieldMotion m, float x, float y, float z) {
-    FIELD_PRECISE float far = field_length(x, y, z) - 0.75f;
-    FIELD_PRECISE float tubes = 0.0f, frequency = 2.5f, thin = 11.0f;
+    FIELD_PRECISE float tubes = 0.0f, frequency = 2.5f;
     for (uint level = 0u; level < 2u; ++level) {
-        FIELD_PRECISE float a = frequency * x + m.swing, b = frequency * y + m.swell,
-                            c = frequency * z;
+        FIELD_PRECISE float a = frequency * x + m.swing, b = frequency * y + m.swell;
+        FIELD_PRECISE float c = frequency * z;
         FIELD_PRECISE float u = field_value_noise(a, b, c, 3u + level) - 0.5f;
         FIELD_PRECISE float v = field_value_noise(a + 0.5f, b + 0.5f, c + 0.5f, 7u + level) - 0.5f;
-        FIELD_PRECISE float tube = 1.0f - thin * field_length(u, v, 0.0f);
+        FIELD_PRECISE float tube = 1.0f - 11.0f * field_length(u, v, 0.0f);
         tubes = max(tubes, tube);
         frequency = 2.0f * frequency;
     }
-    FIELD_PRECISE float value = tubes - 4.0f * max(far, 0.0f);
-    return min(max(value, 0.0f), 1.0f);
+    FIELD_PRECISE float outside = field_length(x, y, z) - 0.75f;
+    FIELD_PRECISE float value = tubes - 4.0f * max(outside, 0.0f);
+    return max(value, 0.0f);
 }
 
-// Soft tissue with much noise (0.3 to 0.5) around bone: a hard shell filled with struts (to 1).
-// In time the struts travel.
+// Soft tissue with much noise (0.3 to 0.5) around bone: a hard shell with gaps, filled with struts
+// (to 1). In time the struts travel.
 FIELD_FUNCTION float field_bone(FieldMotion m, float x, float y, float z) {
-    FIELD_PRECISE float depth = 0.95f - field_length(1.05f * x, 1.2f * y, 1.05f * z);
-    FIELD_PRECISE float a = 130.0f * (x + 1.0f), b = 130.0f * (y + 1.0f), c = 130.0f * (z + 1.0f);
-    FIELD_PRECISE float noise = field_value_noise(a, b, c, 1u) - 0.5f;
-    FIELD_PRECISE float bend = 3.0f * field_value_noise(4.0f * x, 4.0f * y, 4.0f * z, 2u);
+    FIELD_PRECISE float depth = field_below(0.95f, 1.05f, x, 1.2f, y, 1.05f, z);
+    FIELD_PRECISE float noise = field_bumps(130.0f, x, y, z, 1u) - 0.5f;
+    FIELD_PRECISE float bend = 3.0f * field_bumps(4.0f, x, y, z, 2u);
+    FIELD_PRECISE float a = 24.0f * x + bend + m.phase, b = 24.0f * y, c = 24.0f * z + bend;
     FIELD_PRECISE float struts =
-        field_waves(24.0f * x + bend + m.phase, 24.0f * y, 24.0f * z + bend) - 0.5f;
-    FIELD_PRECISE float gaps = field_ramp(bend - 1.5f, 0.1f);
-    FIELD_PRECISE float shell = field_ramp(depth - 0.2f, 0.03f) - field_ramp(depth - 0.26f, 0.03f);
-    FIELD_PRECISE float inside = field_ramp(depth - 0.22f, 0.03f) * field_ramp(struts, 0.3f);
-    FIELD_PRECISE float tissue = (0.4f + 0.25f * noise) * field_ramp(depth, 0.04f);
-    FIELD_PRECISE float value = tissue + 0.6f * max(shell * gaps, inside);
+        field_ramp(depth - 0.22f, 33.0f) * field_ramp(field_waves(a, b, c) - 0.5f, 3.3f);
+    FIELD_PRECISE float shell = field_ramp(depth - 0.2f, 33.0f) - field_ramp(depth - 0.26f, 33.0f);
+    FIELD_PRECISE float pierced = shell * field_ramp(bend - 1.5f, 10.0f);
+    FIELD_PRECISE float tissue = (0.4f + 0.25f * noise) * field_ramp(depth, 25.0f);
+    FIELD_PRECISE float value = tissue + 0.6f * max(pierced, struts);
     return min(max(value, 0.0f), 1.0f);
 }
 
