@@ -1,138 +1,93 @@
 // SPDX-License-Identifier: MIT
-// isorast-bench: GPU times of whole frames and their passes, as a table and as JSON. It links the
+// isorast-bench: GPU times of whole frames and their passes, as tables and as JSON. It links the
 // core only, so that a binary built on one machine runs on another that has a Vulkan driver and
 // little else.
 //
-//   isorast-bench frames --sides 256,512 --types u8,u16 --fields coral,noise -o frames.json
+//   isorast-bench resolution -o resolution.json
+//   isorast-bench frames --volumes coral:256:type=u8 bonsai_256x256x256_uint8.raw@40
+//   isorast-bench isovalue-sweep --quick      a small one, for drivers on the CPU
 #include <fmt/format.h>
-#include <isorast/camera.h>
 #include <isorast/error.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
 
-#include "image/state.h"
+#include "commit.h"
+#include "report.h"
+#include "scenarios.h"
 
 namespace {
 
 using namespace isorast;
-using Json = nlohmann::ordered_json;
+using namespace isorast::bench;
 
-struct Settings {
-    std::vector<uint32_t> sides{256};
-    std::vector<std::string> types{"u8"}, fields{"coral", "noise"};
-    std::vector<std::string> ways{"direct", "direct forward", "raymarch compute",
-                                  "raymarch hardware"};
-    uint32_t width = 3840, height = 2160, warm_up = 10, frames = 40;
-    double azimuth = 30, elevation = 20, zoom = 1;
-    std::string device, output;
-};
+void add_options(CLI::App& app, Settings& settings) {
+    std::string names;
+    for (const Scenario& scenario : scenarios())
+        names += fmt::format("\n  {:<16}{}", scenario.name, scenario.what);
+    app.footer("Scenarios:" + names);
+    app.add_option("scenario", settings.scenario, "one of those below")->required();
+    app.add_option("--volumes", settings.volumes,
+                   "formulas, NAME_WxHxD_TYPE.raw files, or folders of them (time steps); with "
+                   "@ISOVALUE behind, or their own");
+    app.add_option("--ways", settings.ways,
+                   "e.g. 'direct hardware,raymarch compute exact'; else all that the device can do")
+        ->delimiter(',');
+    app.add_option("--sizes", settings.sizes, "e.g. 1280x720,3840x2160")->delimiter(',');
+    app.add_option("--frames", settings.frames, "counted ones for each row, in two rounds");
+    app.add_option("--warm-up", settings.warm_up, "frames before, not counted");
+    app.add_option("--warm-up-ms", settings.warm_up_ms, "and at least so long");
+    app.add_option("--sweep", settings.sweep,
+                   "isovalue-sweep: first, last (shares of the value range), how many")
+        ->delimiter(',')
+        ->expected(3);
+    app.add_option("--degrees", settings.degrees, "motion: of the orbits, a frame")->delimiter(',');
+    app.add_option("--azimuth", settings.azimuth);
+    app.add_option("--elevation", settings.elevation);
+    app.add_option("--zoom", settings.zoom);
+    app.add_flag("--quick", settings.quick, "small volumes and pictures, few frames");
+    app.add_option("--device", settings.device, "as for isorast render");
+    app.add_option("-o,--output", settings.output, "JSON file");
+}
 
-// A technique with its rasterizer, in the words of the tables: "direct forward", "raymarch compute
-// exact".
-struct Way {
-    RendererOptions options;
-    Shading shading = Shading::gooch;
-};
-
-Way parse_way(const std::string& words) {
-    Way way;
-    std::istringstream stream(words);
-    stream >> way.options.technique;
-    for (std::string word; stream >> word;) {
-        if (word == "forward")
-            way.shading = Shading::forward, way.options.rasterizer = Rasterizer::hardware;
-        else if (word == "exact")
-            way.options.exact = true;
-        else if (const auto rasterizer = parse_rasterizer(word))
-            way.options.rasterizer = *rasterizer;
-        else
-            throw Error(fmt::format(
-                "way '{}': expected forward, exact, hardware or compute, found '{}'", words, word));
+const Scenario& scenario_of(const Settings& settings) {
+    std::string names;
+    for (const Scenario& scenario : scenarios()) {
+        if (scenario.name == settings.scenario) return scenario;
+        names += (names.empty() ? "" : ", ") + scenario.name;
     }
-    return way;
+    throw Error(fmt::format("scenario: expected one of {}, found '{}'", names, settings.scenario));
 }
 
-double quantile(std::vector<double> values, double share) {
-    std::ranges::sort(values);
-    return values.empty()
-               ? 0
-               : values[std::min(values.size() - 1, size_t(share * double(values.size())))];
+Json head_of(const Settings& settings, const Gpu& gpu, int argc, char** argv) {
+    std::string command;
+    for (int i = 0; i < argc; ++i)
+        command += (i ? " " : "") + std::string(argv[i]);
+    return {{"scenario", settings.scenario},
+            {"device", gpu.info().name},
+            {"driver", gpu.info().driver},
+            {"commit", ISORAST_COMMIT},
+            {"command", command},
+            {"quick", settings.quick},
+            {"frames", settings.frames},
+            {"warm_up", settings.warm_up},
+            {"agreement", Json::array()},
+            {"skipped", Json::array()},
+            {"rows", Json::array()}};
 }
 
-Json summary(const std::vector<double>& values) {
-    return {{"median_ms", quantile(values, 0.5)}, {"p95_ms", quantile(values, 0.95)}};
+void measure(Gpu& gpu, const Scenario& scenario, const Settings& settings,
+             const std::string& volume, Json& report) {
+    const Subject subject = parse_subject(volume);
+    Contest contest(gpu, subject, settings, report);
+    if (!contest.empty()) contest.measure(scenario.sequences(contest, subject, settings));
 }
 
-// Median and 95th percentile of each pass, and of the whole frame from its first to its last
-// timestamp.
-Json summarize(const std::vector<std::vector<gpu::TimedPass>>& frames) {
-    std::vector<std::string> order;
-    std::map<std::string, std::vector<double>> passes;
-    std::vector<double> totals;
-    for (const auto& frame : frames) {
-        for (const gpu::TimedPass& pass : frame) {
-            if (!passes.contains(pass.name)) order.push_back(pass.name);
-            passes[pass.name].push_back(pass.end_ms - pass.begin_ms);
-        }
-        totals.push_back(frame.empty() ? 0 : frame.back().end_ms);
-    }
-    Json json{{"frame", summary(totals)}, {"passes", Json::object()}};
-    for (const std::string& name : order)
-        json["passes"][name] = summary(passes[name]);
-    return json;
-}
-
-Json measure(Renderer& renderer, const Frame& frame, const Settings& settings) {
-    renderer.render(frame);  // counts, and targets made
-    renderer.state().run(std::vector<Frame>(settings.warm_up, frame));
-    Json json = summarize(renderer.state().run(std::vector<Frame>(settings.frames, frame)));
-    const FrameStats& stats = renderer.stats();
-    json["blocks"] = stats.blocks;
-    json["blocks_active"] = stats.blocks_active;
-    json["blocks_drawn"] = stats.blocks_drawn;
-    json["volume_bytes"] = stats.volume_bytes;
-    json["extra_bytes"] = stats.extra_bytes;
-    return json;
-}
-
-void print_row(const std::string& volume, const std::string& way, const Json& json) {
-    std::string line = fmt::format("{:<22} {:<26} {:9.3f} ms  p95 {:9.3f}  ", volume, way,
-                                   json["frame"]["median_ms"].get<double>(),
-                                   json["frame"]["p95_ms"].get<double>());
-    for (const auto& [name, pass] : json["passes"].items())
-        line += fmt::format("  {} {:.3f}", name, pass["median_ms"].get<double>());
-    fmt::print("{}   drawn {}  extra {:.2f} %\n", line, json["blocks_drawn"].get<uint64_t>(),
-               100 * json["extra_bytes"].get<double>() / json["volume_bytes"].get<double>());
-    std::fflush(stdout);
-}
-
-Json frames(Gpu& gpu, const Settings& settings) {
-    Json rows = Json::array();
-    for (uint32_t side : settings.sides)
-        for (const std::string& field : settings.fields)
-            for (const std::string& type : settings.types) {
-                const std::string name = fmt::format("{}:{}:type={}", field, side, type);
-                const Volume volume = make_procedural(name);
-                Frame frame{.isovalues = {0.5},
-                            .camera = orbit(volume, settings.azimuth, settings.elevation,
-                                            {.zoom = settings.zoom}),
-                            .size = {settings.width, settings.height}};
-                for (const std::string& words : settings.ways) {
-                    const Way way = parse_way(words);
-                    Renderer renderer(gpu, volume, way.options);
-                    frame.shading = way.shading;
-                    Json row{{"volume", name}, {"way", words}};
-                    row.update(measure(renderer, frame, settings));
-                    print_row(name, words, row);
-                    rows.push_back(row);
-                }
-            }
-    return rows;
+void write(const Json& report, const std::string& path) {
+    if (path.empty()) return;
+    std::ofstream file(path);
+    if (!(file << report.dump(1) << "\n")) throw Error(fmt::format("{}: cannot be written", path));
 }
 
 }  // namespace
@@ -140,40 +95,32 @@ Json frames(Gpu& gpu, const Settings& settings) {
 int main(int argc, char** argv) try {
     Settings settings;
     CLI::App app{"GPU times of whole frames and their passes"};
-    app.require_subcommand(1);
-    auto* command =
-        app.add_subcommand("frames", "a still picture, for each volume and way to render");
-    command->add_option("--sides", settings.sides, "voxels a side")->delimiter(',');
-    command->add_option("--types", settings.types, "u8, u16, f32")->delimiter(',');
-    command->add_option("--fields", settings.fields, "formulas")->delimiter(',');
-    command
-        ->add_option("--ways", settings.ways, "e.g. 'direct,direct forward,raymarch compute exact'")
-        ->delimiter(',');
-    command->add_option("--width", settings.width);
-    command->add_option("--height", settings.height);
-    command->add_option("--frames", settings.frames, "counted frames");
-    command->add_option("--warm-up", settings.warm_up, "frames before, not counted");
-    command->add_option("--azimuth", settings.azimuth);
-    command->add_option("--elevation", settings.elevation);
-    command->add_option("--zoom", settings.zoom);
-    command->add_option("--device", settings.device, "as for isorast render");
-    command->add_option("-o,--output", settings.output, "JSON file");
+    add_options(app, settings);
     CLI11_PARSE(app, argc, argv);
+    const Scenario& scenario = scenario_of(settings);
+    settings = with_defaults(settings, scenario);
 
     Gpu gpu({.device = settings.device});
-    fmt::print("{}, {}, {}x{}, median of {} frames after {}\n", gpu.info().name, gpu.info().driver,
-               settings.width, settings.height, settings.frames, settings.warm_up);
-    Json json{{"device", gpu.info().name}, {"driver", gpu.info().driver},
-              {"width", settings.width},   {"height", settings.height},
-              {"frames", settings.frames}, {"warm_up", settings.warm_up}};
-    json["command"] = [&] {
-        std::string line;
-        for (int i = 0; i < argc; ++i)
-            line += (i ? " " : "") + std::string(argv[i]);
-        return line;
-    }();
-    json["rows"] = frames(gpu, settings);
-    if (!settings.output.empty()) std::ofstream(settings.output) << json.dump(1) << "\n";
+    Json report = head_of(settings, gpu, argc, argv);
+    fmt::print("{}: {}\n{}, {}, commit {}; medians of {} frames in two rounds\n", scenario.name,
+               scenario.what, gpu.info().name, gpu.info().driver, ISORAST_COMMIT, settings.frames);
+    const auto start = std::chrono::steady_clock::now();
+    write(report, settings.output);  // better now than after minutes
+    for (const std::string& volume : settings.volumes) {
+        const size_t first = report["rows"].size();
+        try {
+            measure(gpu, scenario, settings, volume, report);
+        } catch (const Error& error) {
+            fmt::print("  left out: {}: {}\n", volume, error.what());
+            report["skipped"].push_back({{"volume", volume}, {"way", ""}, {"why", error.what()}});
+        }
+        print_tables(report["rows"], first);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        report["seconds"] = seconds.count();
+        write(report, settings.output);
+    }
+    fmt::print("{:.1f} s\n", report["seconds"].get<double>());
+    if (report["rows"].empty()) throw Error("nothing could be measured");
     return 0;
 } catch (const std::exception& error) {
     fmt::print(stderr, "isorast-bench: error: {}\n", error.what());

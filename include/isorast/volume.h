@@ -64,7 +64,17 @@ private:
 // A formula in place of voxels, over [-1, 1]^3; see src/volume/field.h. It is sampled on the GPU
 // when a Renderer takes the volume, or on the CPU by sample().
 struct Field {
-    enum class Kind : uint32_t { sphere, torus, gyroid, marschner_lobb, noise, coral };
+    enum class Kind : uint32_t {
+        sphere,
+        torus,
+        gyroid,
+        marschner_lobb,
+        noise,
+        coral,
+        head,
+        vessels,
+        bone
+    };
     Kind kind = Kind::sphere;
     uint32_t octaves = 6;  // noise only
     uint32_t seed = 1;     // noise only
@@ -93,7 +103,7 @@ struct Volume {
 
 // True when `name` is spelled like a formula: "sphere:64", "noise:128:octaves=6:seed=1:type=u8",
 // "gyroid:64x64x32:spacing=1,1,2", "coral:64:steps=30". Names: sphere torus gyroid marschner-lobb
-// noise coral.
+// noise coral head vessels bone.
 bool is_procedural(std::string_view name);
 // A volume of that formula. World positions are the formula's own coordinates, [-1, 1] along the
 // longest side, unless spacing is given. With "steps=" the formula varies smoothly in time: step

@@ -24,13 +24,16 @@ struct FieldKind {
 
 // The bounds enclose the formula over the cube [-1, 1]^3, rounded outwards where they are
 // irrational.
-constexpr std::array<FieldKind, 6> KINDS{{
+constexpr std::array<FieldKind, 9> KINDS{{
     {"sphere", Field::Kind::sphere, 0.25, {-0.75, 1}},
     {"torus", Field::Kind::torus, 0, {-1.05, 0.25}},
     {"gyroid", Field::Kind::gyroid, 0, {-1.5, 1.5}},
     {"marschner-lobb", Field::Kind::marschner_lobb, 0.5, {0, 1}},
     {"noise", Field::Kind::noise, 0.5, {0, 1}},
     {"coral", Field::Kind::coral, 0.5, {0, 1}},
+    {"head", Field::Kind::head, 0.5, {0, 1}},
+    {"vessels", Field::Kind::vessels, 0.5, {0, 1}},
+    {"bone", Field::Kind::bone, 0.5, {0, 1}},
 }};
 constexpr uint32_t MAX_SIDE = 65536, MAX_OCTAVES = 16, MAX_STEPS = 65536;
 
@@ -85,7 +88,7 @@ private:
             volume_.field->kind = kind.kind;
             return;
         }
-        fail_at("sphere, torus, gyroid, marschner-lobb, noise or coral", word);
+        fail_at("sphere, torus, gyroid, marschner-lobb, noise, coral, head, vessels or bone", word);
     }
 
     uint32_t parse_uint(std::string_view word, uint32_t lowest, uint32_t highest,

@@ -27,6 +27,7 @@ using std::sqrt;
 
 const uint FIELD_SPHERE = 0u, FIELD_TORUS = 1u, FIELD_GYROID = 2u, FIELD_MARSCHNER_LOBB = 3u;
 const uint FIELD_NOISE = 4u, FIELD_CORAL = 5u;
+const uint FIELD_HEAD = 6u, FIELD_VESSELS = 7u, FIELD_BONE = 8u;
 
 const float FIELD_PI = 3.14159265358979f;
 
@@ -92,13 +93,18 @@ FIELD_FUNCTION float field_torus(FieldMotion m, float x, float y, float z) {
     return 0.25f - field_length(field_length(a, b, 0.0f) - 0.6f, c, 0.0f);
 }
 
+// Waves in three directions, -1.5 to 1.5; arguments in radians.
+FIELD_FUNCTION float field_waves(float a, float b, float c) {
+    FIELD_PRECISE float sum =
+        field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
+    return sum;
+}
+
 // Waves travel: along x.
 FIELD_FUNCTION float field_gyroid(FieldMotion m, float x, float y, float z) {
     FIELD_PRECISE float a = 2.0f * FIELD_PI * x + m.phase;
     FIELD_PRECISE float b = 2.0f * FIELD_PI * y, c = 2.0f * FIELD_PI * z;
-    FIELD_PRECISE float sum =
-        field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
-    return sum;
+    return field_waves(a, b, c);
 }
 
 // Marschner & Lobb, "An evaluation of reconstruction filters for volume rendering", 1994,
@@ -172,12 +178,85 @@ FIELD_FUNCTION float field_noise(FieldMotion m, uint octaves, uint seed, float x
 FIELD_FUNCTION float field_coral(FieldMotion m, float x, float y, float z) {
     FIELD_PRECISE float a = 14.0f * (x + 1.0f) + m.phase, b = 14.0f * (y + 1.0f),
                         c = 14.0f * (z + 1.0f);
-    FIELD_PRECISE float gyroid =
-        field_sin(a) * field_cos(b) + field_sin(b) * field_cos(c) + field_sin(c) * field_cos(a);
+    FIELD_PRECISE float gyroid = field_waves(a, b, c);
     FIELD_PRECISE float inside = 0.47f - (0.5f + 0.05f * m.swell) * field_length(x, y, z);
     FIELD_PRECISE float steep = 3.0f * inside;
     FIELD_PRECISE float skin = min(steep, 0.35f);
     FIELD_PRECISE float value = 0.5f + min(steep, 0.0f) + 0.22f * (0.6f * gyroid + max(skin, 0.0f));
+    return min(max(value, 0.0f), 1.0f);
+}
+
+// From 0 to 1, `steepness` for each unit of t, from t = 0 on.
+FIELD_FUNCTION float field_ramp(float t, float steepness) {
+    FIELD_PRECISE float ramp = t * steepness;
+    return min(max(ramp, 0.0f), 1.0f);
+}
+
+// Value noise without octaves, of so many cells a unit of length.
+FIELD_FUNCTION float field_bumps(float frequency, float x, float y, float z, uint seed) {
+    FIELD_PRECISE float a = frequency * x, b = frequency * y, c = frequency * z;
+    return field_value_noise(a, b, c, seed);
+}
+
+// The depth below the surface of an ellipsoid, whose radii are 1 over `sx`, `sy` and `sz`.
+FIELD_FUNCTION float field_below(float radius, float sx, float x, float sy, float y, float sz,
+                                 float z) {
+    FIELD_PRECISE float a = sx * x, b = sy * y, c = sz * z;
+    FIELD_PRECISE float below = radius - field_length(a, b, c);
+    return below;
+}
+
+// Shells, as a CT of a head has them: skin (0.3) around a skull (1) with sockets and a jaw, around
+// a folded brain (to 0.65). The face looks along -y. In time the folds travel.
+FIELD_FUNCTION float field_head(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float front = y + 0.88f;
+    FIELD_PRECISE float lumps = 0.06f * field_bumps(5.0f, x, y, z, 1u);
+    FIELD_PRECISE float cranium = field_below(0.97f, 1.25f, x, 1.05f, y, 1.2f, z - 0.125f) - lumps;
+    FIELD_PRECISE float jaw = field_below(0.62f, 1.3f, x, 1.05f, y + 0.33f, 1.0f, z + 0.5f) - lumps;
+    FIELD_PRECISE float eyes =
+        field_below(0.19f, 1.0f, max(x, -x) - 0.3f, 0.7f, front, 1.0f, z + 0.02f);
+    FIELD_PRECISE float nose = field_below(0.13f, 1.4f, x, 0.6f, front, 1.0f, z + 0.34f);
+    FIELD_PRECISE float depth = max(cranium, jaw), hollow = max(eyes, nose);
+    FIELD_PRECISE float a = 28.0f * x + 40.0f * lumps + m.phase, b = 28.0f * y, c = 28.0f * z;
+    FIELD_PRECISE float folds = 0.5f + 0.15f * field_waves(a, b, c);
+    FIELD_PRECISE float skin = 0.3f * field_ramp(depth, 20.0f);
+    FIELD_PRECISE float bone = field_ramp(depth - 0.06f, 25.0f) - field_ramp(depth - 0.14f, 25.0f);
+    FIELD_PRECISE float skull = bone * field_ramp(-hollow, 25.0f);
+    FIELD_PRECISE float brain = folds * field_ramp(cranium - 0.2f, 25.0f);
+    return max(skin, max(skull, brain));
+}
+
+// Sparse tubes in a ball: the curves along which two smooth random fields are both zero. In time
+// the fields shift.
+FIELD_FUNCTION float field_vessels(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float tubes = 0.0f, frequency = 2.5f;
+    for (uint level = 0u; level < 2u; ++level) {
+        FIELD_PRECISE float a = frequency * x + m.swing, b = frequency * y + m.swell;
+        FIELD_PRECISE float c = frequency * z;
+        FIELD_PRECISE float u = field_value_noise(a, b, c, 3u + level) - 0.5f;
+        FIELD_PRECISE float v = field_value_noise(a + 0.5f, b + 0.5f, c + 0.5f, 7u + level) - 0.5f;
+        FIELD_PRECISE float tube = 1.0f - 11.0f * field_length(u, v, 0.0f);
+        tubes = max(tubes, tube);
+        frequency = 2.0f * frequency;
+    }
+    FIELD_PRECISE float outside = field_length(x, y, z) - 0.75f;
+    FIELD_PRECISE float value = tubes - 4.0f * max(outside, 0.0f);
+    return max(value, 0.0f);
+}
+
+// Soft tissue with much noise (0.3 to 0.5) around bone: a hard shell with gaps, filled with struts
+// (to 1). In time the struts travel.
+FIELD_FUNCTION float field_bone(FieldMotion m, float x, float y, float z) {
+    FIELD_PRECISE float depth = field_below(0.95f, 1.05f, x, 1.2f, y, 1.05f, z);
+    FIELD_PRECISE float noise = field_bumps(130.0f, x, y, z, 1u) - 0.5f;
+    FIELD_PRECISE float bend = 3.0f * field_bumps(4.0f, x, y, z, 2u);
+    FIELD_PRECISE float a = 24.0f * x + bend + m.phase, b = 24.0f * y, c = 24.0f * z + bend;
+    FIELD_PRECISE float struts =
+        field_ramp(depth - 0.22f, 33.0f) * field_ramp(field_waves(a, b, c) - 0.5f, 3.3f);
+    FIELD_PRECISE float shell = field_ramp(depth - 0.2f, 33.0f) - field_ramp(depth - 0.26f, 33.0f);
+    FIELD_PRECISE float pierced = shell * field_ramp(bend - 1.5f, 10.0f);
+    FIELD_PRECISE float tissue = (0.4f + 0.25f * noise) * field_ramp(depth, 25.0f);
+    FIELD_PRECISE float value = tissue + 0.6f * max(pierced, struts);
     return min(max(value, 0.0f), 1.0f);
 }
 
@@ -188,7 +267,10 @@ FIELD_FUNCTION float field_value(FieldMotion m, uint kind, uint octaves, uint se
     if (kind == FIELD_GYROID) return field_gyroid(m, x, y, z);
     if (kind == FIELD_MARSCHNER_LOBB) return field_marschner_lobb(m, x, y, z);
     if (kind == FIELD_NOISE) return field_noise(m, octaves, seed, x, y, z);
-    return field_coral(m, x, y, z);
+    if (kind == FIELD_CORAL) return field_coral(m, x, y, z);
+    if (kind == FIELD_HEAD) return field_head(m, x, y, z);
+    if (kind == FIELD_VESSELS) return field_vessels(m, x, y, z);
+    return field_bone(m, x, y, z);
 }
 
 // Everything that sampling a field into a volume needs, on either side; scalar layout, 60 bytes.

@@ -127,7 +127,8 @@ TEST_F(GpuTest, TechniquesAgree) {
 }
 
 TEST_F(GpuTest, FormulasAreSampledAlikeOnBothSides) {
-    for (std::string kind : {"sphere", "torus", "gyroid", "marschner-lobb", "noise", "coral"}) {
+    for (std::string kind : {"sphere", "torus", "gyroid", "marschner-lobb", "noise", "coral",
+                             "head", "vessels", "bone"}) {
         for (std::string type : {"u8", "u16", "f32"}) {
             Volume formula = make_procedural(kind + ":40x33x20:steps=7:type=" + type, 2);
             Volume voxels = make_procedural(formula.name, 2);

@@ -16,8 +16,8 @@ using namespace isorast;
 using Kind = Field::Kind;
 constexpr double PI = std::numbers::pi;
 
-const std::array<std::string, 6> NAMES{"sphere",         "torus", "gyroid",
-                                       "marschner-lobb", "noise", "coral"};
+const std::array<std::string, 9> NAMES{
+    "sphere", "torus", "gyroid", "marschner-lobb", "noise", "coral", "head", "vessels", "bone"};
 
 float value_of(Kind kind, double x, double y, double z) {
     return field::field_value({}, uint32_t(kind), 6, 1, float(x), float(y), float(z));
