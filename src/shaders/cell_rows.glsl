@@ -1,0 +1,77 @@
+// Rows of corners and of cells along x, seen as bits: one bit a corner says "inside"; what follows
+// from it, edges and cells that the surface crosses, follows for a whole row at a time. Needs
+// cases[], the table of marching cubes.
+
+// Corner rows have 9 corners, cell rows 8 cells; a block has 9 corner rows along y.
+uint corner_row(uint y, uint z) { return y + 9 * z; }
+
+// The cells that exist: blocks at the volume's end may be cut short.
+ivec3 cells_left(uvec3 first_cell) { return ivec3(grid.voxels.xyz) - 1 - ivec3(first_cell); }
+
+// Edges that the surface crosses whose lower corner is in this corner row: bits 0..7 along x, 8..16
+// along y, 17..25 along z.
+uint edge_bits(uint row, uint row_y, uint row_z) {
+    return ((row ^ row >> 1) & 0xffu) | (row ^ row_y) << 8 | (row ^ row_z) << 17;
+}
+const uint EDGES_X = 0xffu, EDGES_Y = 0x1ffu << 8, EDGES_Z = 0x1ffu << 17;
+
+// An edge: its corner row << 5 | its bit there.
+uint edge_axis(uint edge) {
+    const uint bit = edge & 31u;
+    return bit < 8 ? 0 : bit < 17 ? 1 : 2;
+}
+uvec3 edge_corner(uint edge) {
+    const uint bit = edge & 31u, row = edge >> 5, axis = edge_axis(edge);
+    return uvec3(bit - (axis == 0 ? 0 : axis == 1 ? 8 : 17), row % 9, row / 9);
+}
+
+// Where the surface crosses an edge, in voxel space. Always computed from the lower corner to the
+// upper one, from the same two voxels: cells, blocks, bricks and rasterizers that share the edge
+// get the same bits, so the surface is watertight.
+vec3 crossing(uvec3 corner, uint axis, float lower, float upper, float iso) {
+    precise const float t = (iso - lower) / (upper - lower);
+    precise vec3 position = vec3(corner);
+    position[axis] += t;
+    return position;
+}
+
+// The edge `number` (marching_cubes.h) of cell (x, y, z).
+uint edge_of_cell(uint number, uint x, uint y, uint z) {
+    const uint axis = number >> 2, low = number & 1u, high = number >> 1 & 1u;
+    if (axis == 0) return corner_row(y + low, z + high) << 5 | x;
+    if (axis == 1) return corner_row(y, z + high) << 5 | (8 + x + low);
+    return corner_row(y + high, z) << 5 | (17 + x + low);
+}
+
+// Corner rows of a cell row: a, b at y and y + 1; c, d the same at z + 1.
+struct CellRow {
+    uint a, b, c, d;
+};
+
+// Bit x: the surface crosses cell x.
+uint occupied_cells(CellRow row) {
+    const uint any_inside = row.a | row.b | row.c | row.d;
+    const uint all_inside = row.a & row.b & row.c & row.d;
+    return (any_inside | any_inside >> 1) & ~(all_inside & all_inside >> 1) & 0xffu;
+}
+
+// The marching-cubes case of cell x: bit c for corner c = x + 2y + 4z.
+uint cell_case(CellRow row, uint x) {
+    const uvec4 pairs = uvec4(row.a, row.b, row.c, row.d) >> x & 3u;
+    return pairs.x | pairs.y << 2 | pairs.z << 4 | pairs.w << 6;
+}
+
+uint triangle_count(uint cell_case_index) { return cases[cell_case_index].y >> 28; }
+
+uint row_triangles(CellRow row, uint cells) {
+    uint count = 0;
+    for (uint left = occupied_cells(row) & cells; left != 0; left &= left - 1)
+        count += triangle_count(cell_case(row, findLSB(left)));
+    return count;
+}
+
+// The edge on which corner `i` of a case's triangle `number` lies.
+uint triangle_edge(uvec2 case_entry, uint number, uint i) {
+    const uint nibble = 3 * number + i;
+    return (nibble < 8 ? case_entry.x >> 4 * nibble : case_entry.y >> 4 * (nibble - 8)) & 15u;
+}
