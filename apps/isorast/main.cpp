@@ -106,8 +106,8 @@ int run(std::vector<std::string> arguments) {
     app.formatter(std::make_shared<Help>());  // as CLI11 wants it
     app.set_help_flag("-h,--help", "Show this help");
     app.set_version_flag("--version", "isorast " ISORAST_VERSION);
-    const std::array commands = {make_render(app), make_info(app), make_devices(app),
-                                 make_compare(app)};
+    const std::array commands = {make_render(app), make_mesh(app), make_info(app),
+                                 make_devices(app), make_compare(app)};
     std::vector<std::string> names(commands.size());
     std::ranges::transform(commands, names.begin(),
                            [](const auto& command) { return command->app.get_name(); });

@@ -147,6 +147,30 @@ void VolumeArguments::add_to(CLI::App& app) {
         });
 }
 
+void add_isovalues(CLI::App& app, std::vector<std::string>& words) {
+    const auto check = [](const std::string& text) {
+        // A wrong word is found before a large file is read.
+        try {
+            parse_isovalues(text, make_procedural("sphere:2"));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    app.add_option("--iso", words,
+                   "Isovalues in data units: 300 | 200,600 | 200:1000:100 | p99 | 1.5sigma | "
+                   "auto (default)")
+        ->type_name("VALUES")
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(check, ""))
+        ->group("Surface");
+}
+
+std::vector<double> isovalues_of(const std::vector<std::string>& words, const Volume& volume) {
+    return parse_isovalues(words.empty() ? "auto" : fmt::format("{}", fmt::join(words, ",")),
+                           volume);
+}
+
 std::string human_bytes(uint64_t bytes) {
     constexpr const char* UNITS[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
     double size = static_cast<double>(bytes);

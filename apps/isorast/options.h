@@ -25,6 +25,7 @@ struct Command {
 };
 
 std::unique_ptr<Command> make_render(CLI::App& parent);
+std::unique_ptr<Command> make_mesh(CLI::App& parent);
 std::unique_ptr<Command> make_info(CLI::App& parent);
 std::unique_ptr<Command> make_devices(CLI::App& parent);
 std::unique_ptr<Command> make_compare(CLI::App& parent);
@@ -38,6 +39,10 @@ struct VolumeArguments {
 
     void add_to(CLI::App& app);
 };
+
+// --iso, as typed; and what the words mean in a volume.
+void add_isovalues(CLI::App& app, std::vector<std::string>& words);
+std::vector<double> isovalues_of(const std::vector<std::string>& words, const Volume& volume);
 
 // "1280x720", "0.5,0.5,2": `count` numbers between 'x' or ','. Throws CLI::ValidationError.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, size_t count);

@@ -75,22 +75,7 @@ struct Render : Command {
     }
 
     void add_surface_options() {
-        const auto check = [](const std::string& text) {
-            // A wrong word is found before a large file is read.
-            try {
-                parse_isovalues(text, make_procedural("sphere:2"));
-            } catch (const Error& error) {
-                return std::string(error.what());
-            }
-            return std::string();
-        };
-        app.add_option("--iso", isovalue_words,
-                       "Isovalues in data units: 300 | 200,600 | 200:1000:100 | p99 | 1.5sigma | "
-                       "auto (default)")
-            ->type_name("VALUES")
-            ->allow_extra_args(false)
-            ->check(CLI::Validator(check, ""))
-            ->group("Surface");
+        add_isovalues(app, isovalue_words);
         app.add_option_function<std::vector<std::string>>(
                "--color",
                [this](const std::vector<std::string>& words) {
@@ -231,9 +216,7 @@ struct Render : Command {
         outputs = picture_names("--output", output, steps);
         if (!reference.empty()) references = picture_names("--reference", reference, steps);
         const Volume volume = series.load(steps.front());
-        frame.isovalues = parse_isovalues(
-            isovalue_words.empty() ? "auto" : fmt::format("{}", fmt::join(isovalue_words, ",")),
-            volume);
+        frame.isovalues = isovalues_of(isovalue_words, volume);
         if (frame.colors.size() > frame.isovalues.size()) {
             throw CLI::ValidationError(
                 "--color", fmt::format("{} colors for {} isovalues", frame.colors.size(),

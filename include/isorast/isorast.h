@@ -6,6 +6,7 @@
 #include <isorast/gpu.h>
 #include <isorast/image.h>
 #include <isorast/load.h>
+#include <isorast/mesh.h>
 #include <isorast/renderer.h>
 #include <isorast/series.h>
 #include <isorast/volume.h>

@@ -6,14 +6,12 @@
 #include <isorast/error.h>
 #include <isorast/image.h>
 #include <png.h>
-#include <unistd.h>
 #include <zlib.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+
+#include "image/whole_file.h"
 
 namespace isorast {
 namespace {
@@ -50,14 +48,6 @@ void append_text_chunk(Bytes& bytes, const std::string& keyword, const std::stri
         bytes.push_back(static_cast<uint8_t>(c));
     const uLong checksum = crc32(0, bytes.data() + start, static_cast<uInt>(bytes.size() - start));
     append_big_endian(bytes, static_cast<uint32_t>(checksum));
-}
-
-// Zero, or the errno of what failed.
-int write_bytes(const std::string& path, const Bytes& bytes) {
-    FILE* file = std::fopen(path.c_str(), "wb");
-    if (!file) return errno;
-    const int failed = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() ? 0 : errno;
-    return std::fclose(file) != 0 && !failed ? errno : failed;
 }
 
 Bytes read_bytes(const std::string& path) {
@@ -98,17 +88,9 @@ std::vector<uint8_t> encode_png(const Image& image,
 
 void write_png(const std::string& path, const Image& image,
                const std::vector<std::pair<std::string, std::string>>& text) {
-    const Bytes bytes = encode_png(image, text);
-    // Devices and pipes are written in place; a file is renamed when it is whole.
-    std::error_code ignored;
-    const bool in_place = fs::exists(path, ignored) && !fs::is_regular_file(path, ignored);
-    const std::string written = in_place ? path : fmt::format("{}.{}.tmp", path, getpid());
-    int failed = write_bytes(written, bytes);
-    if (!failed && !in_place && std::rename(written.c_str(), path.c_str()) != 0) failed = errno;
-    if (failed) {
-        if (!in_place) fs::remove(written, ignored);
-        throw Error(fmt::format("{}: cannot be written: {}", path, std::strerror(failed)));
-    }
+    WholeFile file(path);
+    file.write(encode_png(image, text));
+    file.finish();
 }
 
 Image read_png(const std::string& path) {
