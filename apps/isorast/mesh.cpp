@@ -93,7 +93,9 @@ struct MeshCommand : Command {
                                 {"vertices", mesh.positions.size()},
                                 {"closed", mesh.closed}});
         }
-        const uint64_t bytes = std::filesystem::file_size(output);
+        std::error_code is_no_file;
+        const uint64_t size = std::filesystem::file_size(output, is_no_file);
+        const uint64_t bytes = is_no_file ? 0 : size;
         const std::string units = meshes.front().length_units;
         if (json) {
             fmt::print("{}", text_of(Json{{"output", output},

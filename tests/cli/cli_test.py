@@ -62,7 +62,7 @@ class Usage(CommandLine):
 
     def test_help(self):
         self.assertIn("isorast render", self.isorast("--help")[0])
-        for command in ["render", "info", "devices", "compare"]:
+        for command in ["render", "mesh", "info", "devices", "compare"]:
             out, err = self.isorast(command, "--help")
             self.assertIn("Example", out)
             self.assertEqual(err, "")
@@ -73,7 +73,7 @@ class Usage(CommandLine):
         self.assertIn("did you mean render?", self.isorast("rendr", "x.raw", code=2)[1])
         self.assertIn("info, devices, compare", self.isorast("frobnicate", code=2)[1])
         self.assertIn("isorast render sphere:64", self.isorast("sphere:64", code=2)[1])
-        for later in ["view", "mesh", "bench"]:
+        for later in ["view", "bench"]:
             self.isorast(later, code=2)
 
     def test_unknown_option(self):
@@ -404,6 +404,42 @@ class Render(CommandLine):
             _, err = self.render(*words, code=1)
             self.assertRegex(err, r"isorast: error: [^\n]+\n\Z")
         self.assertEqual([name for name in os.listdir(self.folder.name) if "tmp" in name], [])
+
+
+class Mesh(CommandLine):
+    @classmethod
+    def setUpClass(cls):
+        done = subprocess.run([ISORAST, "devices", "--json"], capture_output=True, timeout=60)
+        if done.returncode or not any(device["compute"] for device in json.loads(done.stdout)):
+            raise unittest.SkipTest("no Vulkan device")
+
+    def test_summary_and_json(self):
+        out, err = self.isorast("mesh", "torus:24", "--iso", "0", "-o", "t.stl")
+        self.assertEqual(err, "")
+        self.assertRegex(out, r"\At\.stl  iso 0  \d+ triangles  \d+ vertices  [\d.]+ KiB  "
+                              r"lengths in unknown units  .+  \d+\.\d\d s\n\Z")
+        self.assertEqual(os.listdir(self.folder.name), ["t.stl"])  # nothing temporary
+        found = json.loads(self.isorast("--json", "-o", "t.ply", "mesh", "torus:24", "--iso", "0")[0])
+        self.assertEqual((found["triangles"], found["bytes"]), (2 * found["vertices"], len(self.read("t.ply"))))
+        self.assertEqual(len(self.read("t.stl")), 84 + 50 * found["triangles"])
+        self.assertTrue(found["surfaces"][0]["closed"])
+
+    def test_several_isovalues(self):
+        out, _ = self.isorast("mesh", "sphere:24", "--iso", "0.25,0.5", "-o", "s.obj", "--stats")
+        self.assertEqual(len(out.splitlines()), 3)
+        self.assertEqual(self.read("s.obj").count(b"\no iso_"), 2)
+        _, err = self.isorast("mesh", "sphere:24", "--iso", "0.25,0.5", "-o", "s.stl", code=1)
+        self.assertIn("STL holds one surface", err)
+
+    def test_errors(self):
+        self.assertIn("--output", self.isorast("mesh", "sphere:8", code=2)[1])
+        self.assertIn(".glb", self.isorast("mesh", "sphere:8", "-o", "a.step", code=2)[1])
+        self.isorast("mesh", "sphere:8", "--iso", "abc", "-o", "a.stl", code=2)
+        for words in [["none.raw", "-o", "a.stl"], ["sphere:16", "-o", "no/such/folder.stl"],
+                      ["sphere:16", "--iso", "9", "-o", "a.stl"], ["sphere:16", "--device", "none", "-o", "a.stl"]]:
+            _, err = self.isorast("mesh", *words, code=1)
+            self.assertRegex(err, r"\Aisorast: error: [^\n]+\n\Z")
+        self.assertEqual(os.listdir(self.folder.name), [])
 
 
 if __name__ == "__main__":
