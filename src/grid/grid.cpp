@@ -137,6 +137,7 @@ Grid::Grid(const gpu::Device& device, const Series& series, uint32_t max_brick_s
     make_pipelines();
     step_ = &steps_->first();
     gpu::run_once(device_, [&](gpu::Commands& commands) { begin_frame(commands, {}); });
+    building_ = false;
 }
 
 Grid::~Grid() {
@@ -216,10 +217,21 @@ void Grid::begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) 
     commands.update(frame_buffer_, 0, &frame, sizeof(frame));
     commands.barrier();
     commands.set_scene(make_set(commands));
-    if (step_->built) return;
+    building_ = !step_->built;
+    if (building_) build_step(commands);
+    step_->built = true;
+}
+
+void Grid::begin_alone(gpu::Commands& commands) const {
+    commands.update(info_buffer_, 0, &info_, sizeof(info_));
+    commands.barrier();
+    commands.set_scene(make_set(commands));
+    if (building_) build_step(commands);
+}
+
+void Grid::build_step(gpu::Commands& commands) const {
     if (step_->sampling) sample_formula(commands);
     build_minmax(commands);
-    step_->built = true;
 }
 
 VkDescriptorSet Grid::make_set(gpu::Commands& commands) const {

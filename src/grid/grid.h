@@ -66,6 +66,9 @@ public:
     // Makes set 0 and gives it to the commands' passes; `frame` becomes the frame's uniform block.
     // Where a step is shown for the first time, builds its min-max pyramid.
     void begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame);
+    // For commands that run at once, while those of the last begin_frame() are still recorded:
+    // makes set 0, and the pyramid should only those commands build it.
+    void begin_alone(gpu::Commands& commands) const;
     // The commands of the last begin_frame() will not run.
     void forget_pyramid() { step_->built = false; }
 
@@ -73,6 +76,7 @@ private:
     void make_scene_layout();
     void make_pipelines();
     VkDescriptorSet make_set(gpu::Commands& commands) const;
+    void build_step(gpu::Commands& commands) const;
     void sample_formula(gpu::Commands& commands) const;
     void build_minmax(gpu::Commands& commands) const;
     // The stored range of every node of a level of the pyramid, read back.
@@ -83,7 +87,8 @@ private:
     StepFormat format_;
     shared::GridInfo info_{};
     std::unique_ptr<Steps> steps_;
-    Step* step_ = nullptr;  // the one that is shown
+    Step* step_ = nullptr;   // the one that is shown
+    bool building_ = false;  // by the commands of the last begin_frame()
     gpu::Sampler sampler_;
     gpu::Buffer info_buffer_, frame_buffer_;
     VkDescriptorSetLayout scene_layout_ = VK_NULL_HANDLE;

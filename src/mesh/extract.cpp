@@ -2,6 +2,7 @@
 // From a volume to meshes: extract on the GPU, weld, place in the world.
 #include <fmt/format.h>
 #include <isorast/mesh.h>
+#include <isorast/series.h>
 
 #include <cmath>
 
@@ -91,7 +92,8 @@ Mesh in_world(const Surface& surface, const Volume& volume) {
 std::vector<Mesh> extract_meshes(Gpu& gpu, const Volume& volume,
                                  const std::vector<double>& isovalues, const MeshOptions& options) {
     check(volume);
-    const Grid grid(gpu.device(), volume, options.max_brick_side);
+    const Grid grid(gpu.device(), series_of({&volume, 1}), options.max_brick_side,
+                    /* step_bytes= */ 0);
     const SurfaceExtractor extractor(grid, /* gradients= */ true);
     std::vector<Mesh> meshes;
     for (const double isovalue : isovalues) {

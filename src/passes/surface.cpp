@@ -123,7 +123,7 @@ std::vector<uint32_t> SurfaceExtractor::count(float isovalue) const {
     for (uint32_t first = 0; first < blocks; first += BLOCKS_AT_ONCE) {
         const uint32_t n = std::min(BLOCKS_AT_ONCE, blocks - first);
         gpu::run_once(grid_.device(), [&](gpu::Commands& commands) {
-            grid_.begin_frame(commands, {});
+            grid_.begin_alone(commands);
             commands.bind(count_, {cases_, buffer});
             commands.push(Push{isovalue, first, n, row_of(n)});
             dispatch_rows(commands, n);
@@ -194,7 +194,7 @@ void SurfaceExtractor::extract_batch(float isovalue, const Batch& batch, Surface
         host_buffer(device, gradients_ ? sizeof(glm::vec4) * vertices : 0);
     const gpu::Buffer indices = host_buffer(device, sizeof(glm::uvec3) * triangles);
     gpu::run_once(device, [&](gpu::Commands& commands) {
-        grid_.begin_frame(commands, {});
+        grid_.begin_alone(commands);
         commands.bind(vertices_, {cases_, listed, row_vertices, positions, gradients});
         commands.push(Push{isovalue, all, row_of(all), own, first.first_vertex});
         dispatch_rows(commands, all);

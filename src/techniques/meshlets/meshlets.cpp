@@ -98,7 +98,7 @@ void Meshlets::prepare(Commands& commands, const std::vector<float>& isovalues) 
     chunks_.clear();
     const uint64_t most =
         std::min<uint64_t>(device.limits().maxStorageBufferRange, device.max_allocation());
-    uint64_t needed = grid_.volume_bytes() + grid_.extra_bytes();
+    uint64_t needed = grid_.steps().volume_bytes() + grid_.extra_bytes();
     for (uint32_t surface = 0; surface < isovalues.size(); ++surface) {
         const auto meshes =
             build_meshlets(extractor_.extract(isovalues[surface]), grid_.info().blocks, most);
