@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// meshlets draws what direct draws, bit for bit: the same vertices from the same formula, through
-// the same transformation.
+// meshlets draws what direct's hardware rasterizer draws, bit for bit: the same vertices from the
+// same formula, through the same transformation. And it culls.
 #include <cstring>
 
 #include "gpu/gpu_fixture.h"
@@ -12,7 +12,7 @@ using namespace reference;
 
 void expect_direct(Gpu& gpu, const Volume& volume, const std::vector<double>& isovalues,
                    const std::vector<Camera>& cameras, uint32_t max_brick_side = 0) {
-    Renderer direct(gpu, volume, {.technique = "direct"});
+    Renderer direct(gpu, volume, {.technique = "direct", .rasterizer = Rasterizer::hardware});
     Renderer meshlets(gpu, volume, {.technique = "meshlets", .max_brick_side = max_brick_side});
     for (size_t i = 0; i < cameras.size(); ++i) {
         Frame f;
@@ -44,6 +44,29 @@ TEST_F(GpuTest, MeshletsDrawWhatDirectDraws) {
     // Many voxels at the isovalue.
     const Volume blob = random_blob(48, 3);
     expect_direct(gpu, blob, {100}, {view(blob, 0), view(blob, 1), view(blob, 2)});
+}
+
+TEST_F(GpuTest, MeshletsThatNothingShowsAreNotDrawn) {
+    if (GRAPHICS_CRASHES || !gpu.info().why_not_hardware.empty()) GTEST_SKIP();
+    // Of a sphere, the first frame already leaves out the back; in noise, the second frame knows.
+    for (const auto& [name, level, cold_share, warm_share] :
+         {std::tuple{"sphere:96", 0.25, 0.8, 0.8},
+          {"noise:96:octaves=3:type=u8", 0.5, 1.0, 0.75}}) {
+        const Volume volume = sampled(name);
+        Renderer renderer(gpu, volume, {.technique = "meshlets"});
+        Frame f = frame(orbit(volume, 30, 20), {level});
+        f.size = {640, 480};
+        const Image cold = renderer.render(f);
+        const auto all = double(renderer.stats().blocks_active);
+        EXPECT_LE(double(renderer.stats().blocks_drawn), cold_share * all) << name;
+        const Image warm = renderer.render(f);
+        EXPECT_LE(double(renderer.stats().blocks_drawn), warm_share * all) << name;
+        f.culling = false;
+        const Image whole = renderer.render(f);
+        EXPECT_EQ(double(renderer.stats().blocks_drawn), all) << name;
+        EXPECT_TRUE(cold.depth == whole.depth && cold.rgba == whole.rgba) << name;
+        EXPECT_TRUE(warm.depth == whole.depth && warm.rgba == whole.rgba) << name;
+    }
 }
 
 }  // namespace

@@ -7,8 +7,7 @@
 #include "shaders/scene.glsl"
 #include "techniques/direct/list.glsl"
 #include "techniques/direct/active_groups.glsl"
-#include "techniques/direct/frustum.glsl"
-#include "techniques/direct/pyramid.glsl"
+#include "shaders/frustum.glsl"
 
 layout(local_size_x = 32) in;
 
@@ -33,26 +32,7 @@ layout(set = 1, binding = 5, std430) readonly buffer TestedBlocks { uint tested_
 shared uint drawn_mask, quartets;  // of a group: its drawn blocks, and quartets that hold any
 shared uint first_entry;
 
-// True if depth already drawn is nearer than all of the block, at every pixel that the block can
-// touch.
-bool is_hidden(uint eye, vec3 low, vec3 high) {
-    Extent extent;
-    if (!project(eye, low, high, extent)) return false;
-    const vec2 last = vec2(frame.size.xy) - 1.0;
-    const uvec2 low_pixel = uvec2(clamp(floor(extent.least), vec2(0.0), last));
-    const uvec2 high_pixel = uvec2(clamp(floor(extent.greatest), vec2(0.0), last));
-    // The finest level at which the block covers at most 4x4 squares.
-    uint level = 1;
-    while (level < PYRAMID_LEVELS &&
-           any(greaterThan((high_pixel >> level) - (low_pixel >> level), uvec2(3)))) ++level;
-    const uvec2 first = low_pixel >> level, end = high_pixel >> level;
-    if (any(greaterThan(end - first, uvec2(15)))) return false;  // larger than a thousand pixels
-    const uint offset = pyramid_offset(eye, level), width = pyramid_size(level).x;
-    for (uint y = first.y; y <= end.y; ++y)
-        for (uint x = first.x; x <= end.x; ++x)
-            if (pyramid[offset + x + width * y] <= extent.nearest) return false;
-    return true;
-}
+#include "shaders/hidden.glsl"
 
 // `seen`: in the last frame, or by the raster proxies.
 bool is_selected(uvec3 block, bool seen) {

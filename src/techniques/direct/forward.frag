@@ -6,7 +6,7 @@
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/shading.glsl"
-#include "techniques/direct/fragment.glsl"
+#include "shaders/fragment.glsl"
 
 layout(location = 0) in vec3 position;  // voxel space
 layout(location = 1) in vec3 gradient;

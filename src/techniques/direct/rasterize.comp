@@ -23,7 +23,7 @@ layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 
 uint eye = 0;  // that all threads draw for
 
-#include "techniques/direct/cell_rows.glsl"
+#include "shaders/cell_rows.glsl"
 
 // Every pixel of every triangle goes through here.
 void write_pixel(ivec2 pixel, float depth, bool front) {

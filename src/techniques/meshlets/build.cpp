@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <future>
+#include <span>
 #include <thread>
 #include <unordered_map>
 
@@ -55,13 +56,24 @@ Part gather(const Surface& surface, const std::vector<size_t>& blocks) {
     return part;
 }
 
-shared::Meshlet describe(const glm::vec3* vertices, uint32_t count) {
+void set_box(shared::Meshlet& meshlet, std::span<const glm::vec3> vertices) {
     glm::vec3 low = vertices[0], high = low;
-    for (uint32_t i = 1; i < count; ++i) {
-        low = glm::min(low, vertices[i]);
-        high = glm::max(high, vertices[i]);
+    for (const glm::vec3& vertex : vertices) {
+        low = glm::min(low, vertex);
+        high = glm::max(high, vertex);
     }
-    return {{low.x, low.y, low.z}, {high.x, high.y, high.z}, 0, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+        meshlet.low[axis] = low[axis];
+        meshlet.high[axis] = high[axis];
+    }
+}
+
+uint32_t packed_cone(const meshopt_Bounds& bounds) {
+    const auto byte = [](signed char value, int place) {
+        return uint32_t(uint8_t(value)) << 8 * place;
+    };
+    return byte(bounds.cone_axis_s8[0], 0) | byte(bounds.cone_axis_s8[1], 1) |
+           byte(bounds.cone_axis_s8[2], 2) | byte(bounds.cone_cutoff_s8, 3);
 }
 
 MeshletMesh build(const Part& part) {
@@ -80,7 +92,12 @@ MeshletMesh build(const Part& part) {
         const size_t first = mesh.vertices.size();
         for (unsigned i = 0; i < meshlet.vertex_count; ++i)
             mesh.vertices.push_back(part.positions[vertices[meshlet.vertex_offset + i]]);
-        shared::Meshlet out = describe(&mesh.vertices[first], meshlet.vertex_count);
+        shared::Meshlet out{};
+        set_box(out, std::span(mesh.vertices).subspan(first));
+        out.cone = packed_cone(meshopt_computeMeshletBounds(
+            &vertices[meshlet.vertex_offset], &corners[meshlet.triangle_offset],
+            meshlet.triangle_count, &part.positions[0].x, part.positions.size(),
+            sizeof(glm::vec3)));
         out.first_vertex = uint32_t(first);
         out.first_triangle = uint32_t(mesh.triangles.size());
         out.counts = meshlet.vertex_count | meshlet.triangle_count << 16;

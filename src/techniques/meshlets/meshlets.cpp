@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
 // meshlets: the stored mesh that direct is measured against (Kreskowski 2022, section 4, "Optimized
 // Mesh Reference"). A new isovalue extracts the whole surface on the GPU, welded, makes meshlets of
-// it on the CPU, and stores them; a frame draws those in the frustum.
+// it on the CPU, and stores them; a frame draws those in view that nothing hides.
 #include <fmt/format.h>
 #include <isorast/error.h>
 
 #include <array>
 #include <cstring>
 
+#include "clip_frag.h"
+#include "clip_stereo_frag.h"
 #include "draw_meshlets_mesh.h"
+#include "draw_meshlets_stereo_mesh.h"
 #include "draw_meshlets_task.h"
 #include "gpu/device.h"
-#include "meshlet_number_frag.h"
+#include "passes/depth_pyramid.h"
 #include "passes/surface.h"
+#include "surface_number_frag.h"
+#include "surface_number_stereo_frag.h"
 #include "techniques/meshlets/build.h"
 #include "techniques/technique.h"
 
@@ -30,11 +35,17 @@ constexpr uint64_t STAGING_BYTES = 32u << 20;
 struct Chunk {
     uint32_t surface = 0, meshlet_count = 0;
     gpu::Buffer meshlets, vertices, triangles;
+    gpu::Buffer seen;  // by the last frame: a bit a meshlet
     gpu::Buffer draw;  // VkDrawMeshTasksIndirectCommandEXT
 
     uint64_t bytes() const {
-        return meshlets.bytes() + vertices.bytes() + triangles.bytes() + draw.bytes();
+        return meshlets.bytes() + vertices.bytes() + triangles.bytes() + seen.bytes() +
+               draw.bytes();
     }
+};
+
+struct Push {
+    uint32_t meshlet_count, surface, pass, has_seen;
 };
 
 class Meshlets final : public Technique {
@@ -42,20 +53,27 @@ public:
     explicit Meshlets(const TechniqueContext& context);
 
     Rasterizer rasterizer() const override { return Rasterizer::hardware; }
+    Occlusion occlusion() const override { return Occlusion::hiz; }
     // Submits to the device's queue and waits, so that what frames in flight use is free then.
     void prepare(Commands& commands, const std::vector<float>& isovalues) override;
     void record(Commands& commands, const Frame& frame, Target& target) override;
     uint64_t gpu_bytes() const override;
+    const gpu::Buffer* counters() const override { return &counters_; }
 
 private:
     void add_chunk(uint32_t surface, const MeshletMesh& mesh);
+    const gpu::Pipeline& pipeline(const Frame& frame);
+    void draw(Commands& commands, const Frame& frame, const Target& target, uint32_t pass);
     template <class T>
     gpu::Buffer upload(const std::vector<T>& values) const;
 
     const Grid& grid_;
     SurfaceExtractor extractor_;
-    gpu::Pipeline draw_, draw_numbered_;
+    DepthPyramid pyramid_;
+    std::array<gpu::Pipeline, 8> pipelines_;  // made when first needed
+    gpu::Buffer counters_;
     std::vector<Chunk> chunks_;
+    bool has_seen_ = false;  // a frame has filled Chunk::seen
 };
 
 const Grid& checked(const TechniqueContext& context) {
@@ -74,19 +92,37 @@ const Grid& checked(const TechniqueContext& context) {
 }
 
 Meshlets::Meshlets(const TechniqueContext& context)
-    : grid_(checked(context)), extractor_(grid_, /* gradients= */ false) {
-    const auto info = grid_.pipeline_info("draw meshlets", std::vector(3, Kind::buffer), 12);
-    const gpu::Shader task{VK_SHADER_STAGE_TASK_BIT_EXT, draw_meshlets_task};
-    const gpu::Shader mesh{VK_SHADER_STAGE_MESH_BIT_EXT, draw_meshlets_mesh};
-    const gpu::Shader numbers{VK_SHADER_STAGE_FRAGMENT_BIT, meshlet_number_frag};
-    const VkFormat depth = VK_FORMAT_D32_SFLOAT;
-    draw_ = gpu::Pipeline::graphics(grid_.device(), info, {task, mesh}, {{}, depth});
-    draw_numbered_ = gpu::Pipeline::graphics(grid_.device(), info, {task, mesh, numbers},
-                                             {{VK_FORMAT_R32_UINT}, depth});
+    : grid_(checked(context)),
+      extractor_(grid_, /* gradients= */ false),
+      pyramid_(grid_),
+      counters_(grid_.device(), sizeof(shared::Counters), Memory::device, "counters") {}
+
+const gpu::Pipeline& Meshlets::pipeline(const Frame& frame) {
+    const bool numbered = frame.isovalues.size() > 1, stereo = frame.eyes() > 1;
+    const bool clipped = !frame.clips.empty();
+    gpu::Pipeline& pipeline = pipelines_[numbered + 2 * stereo + 4 * clipped];
+    if (pipeline) return pipeline;
+
+    using Code = std::span<const uint32_t>;
+    std::vector<gpu::Shader> shaders{
+        {VK_SHADER_STAGE_TASK_BIT_EXT, draw_meshlets_task},
+        {VK_SHADER_STAGE_MESH_BIT_EXT,
+         stereo ? Code(draw_meshlets_stereo_mesh) : Code(draw_meshlets_mesh)}};
+    const Code number = stereo ? Code(surface_number_stereo_frag) : Code(surface_number_frag);
+    const Code clip = stereo ? Code(clip_stereo_frag) : Code(clip_frag);
+    if (numbered || clipped)
+        shaders.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, numbered ? number : clip});
+    std::vector<VkFormat> colors;
+    if (numbered) colors = {VK_FORMAT_R32_UINT};
+    const auto info =
+        grid_.pipeline_info("draw meshlets", std::vector(6, Kind::buffer), sizeof(Push), {clipped});
+    pipeline =
+        gpu::Pipeline::graphics(grid_.device(), info, shaders, {colors, VK_FORMAT_D32_SFLOAT});
+    return pipeline;
 }
 
 uint64_t Meshlets::gpu_bytes() const {
-    uint64_t bytes = extractor_.gpu_bytes();
+    uint64_t bytes = extractor_.gpu_bytes() + counters_.bytes();
     for (const Chunk& chunk : chunks_)
         bytes += chunk.bytes();
     return bytes;
@@ -96,6 +132,7 @@ void Meshlets::prepare(Commands& commands, const std::vector<float>& isovalues) 
     const gpu::Device& device = grid_.device();
     gpu::run_once(device, [](Commands&) {});  // frames that use the old chunks have finished
     chunks_.clear();
+    has_seen_ = false;
     const uint64_t most =
         std::min<uint64_t>(device.limits().maxStorageBufferRange, device.max_allocation());
     uint64_t needed = grid_.steps().volume_bytes() + grid_.extra_bytes();
@@ -117,10 +154,10 @@ void Meshlets::prepare(Commands& commands, const std::vector<float>& isovalues) 
 
 void Meshlets::add_chunk(uint32_t surface, const MeshletMesh& mesh) {
     const auto count = uint32_t(mesh.meshlets.size());
-    const VkDrawMeshTasksIndirectCommandEXT draw{
-        (count + shared::TASK_MESHLETS - 1) / shared::TASK_MESHLETS, 1, 1};
+    const uint32_t groups = (count + shared::TASK_MESHLETS - 1) / shared::TASK_MESHLETS;
     chunks_.push_back({surface, count, upload(mesh.meshlets), upload(mesh.vertices),
-                       upload(mesh.triangles), upload(std::vector{draw})});
+                       upload(mesh.triangles), upload(std::vector<uint32_t>(groups)),
+                       upload(std::vector<VkDrawMeshTasksIndirectCommandEXT>{{groups, 1, 1}})});
 }
 
 template <class T>
@@ -140,18 +177,29 @@ gpu::Buffer Meshlets::upload(const std::vector<T>& values) const {
 }
 
 void Meshlets::record(Commands& commands, const Frame& frame, Target& target) {
-    struct Push {
-        uint32_t meshlet_count, surface, culling;
-    };
-    const auto pass = commands.pass("draw meshlets");
-    const bool numbered = frame.isovalues.size() > 1;
+    shared::Counters counters{};
+    for (const Chunk& chunk : chunks_)
+        counters.blocks_active += chunk.meshlet_count;
+    commands.update(counters_, 0, &counters, sizeof(counters));
+    pyramid_.fit(target);
+    commands.barrier();
+    if (!frame.culling) return draw(commands, frame, target, shared::ONLY_PASS);
+    draw(commands, frame, target, shared::FIRST_PASS);
+    pyramid_.build(commands, target);
+    draw(commands, frame, target, shared::SECOND_PASS);
+    has_seen_ = true;
+}
+
+void Meshlets::draw(Commands& commands, const Frame& frame, const Target& target, uint32_t pass) {
+    constexpr std::array NAMES{"draw meshlets", "draw seen", "draw unseen"};
+    const auto timed = commands.pass(NAMES[pass]);
     std::vector<const gpu::Texture*> colors;
-    if (numbered) colors = {&target.surfaces};
-    commands.begin_rendering(colors, &target.depth, /* clear= */ true);
+    if (frame.isovalues.size() > 1) colors = {&target.surfaces};
+    commands.begin_rendering(colors, &target.depth, /* clear= */ pass != shared::SECOND_PASS);
     for (const Chunk& chunk : chunks_) {
-        commands.bind(numbered ? draw_numbered_ : draw_,
-                      {chunk.meshlets, chunk.vertices, chunk.triangles});
-        commands.push(Push{chunk.meshlet_count, chunk.surface, frame.culling});
+        commands.bind(pipeline(frame), {chunk.meshlets, chunk.vertices, chunk.triangles, chunk.seen,
+                                        pyramid_.buffer(), counters_});
+        commands.push(Push{chunk.meshlet_count, chunk.surface, pass, has_seen_});
         commands.draw_mesh_tasks_indirect(chunk.draw, 0);
     }
     commands.end_rendering();

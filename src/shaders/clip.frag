@@ -4,6 +4,6 @@
 // Thread: one fragment. Out: its depth, unless a clip plane cuts it off; only drawn where there are
 // clip planes.
 #include "shaders/scene.glsl"
-#include "techniques/direct/fragment.glsl"
+#include "shaders/fragment.glsl"
 
 void main() { clip_fragment(); }

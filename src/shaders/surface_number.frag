@@ -4,7 +4,7 @@
 // Thread: one fragment. Out: the number of its surface; only drawn where there are several
 // surfaces.
 #include "shaders/scene.glsl"
-#include "techniques/direct/fragment.glsl"
+#include "shaders/fragment.glsl"
 
 layout(location = 0) out uint surface_number;
 layout(push_constant) uniform Push { uint draw, surface; };

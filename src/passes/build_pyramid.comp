@@ -3,7 +3,7 @@
 // Workgroup: 64x64 pixels of one eye. Thread: 4x4 of them. Out: the farthest depth (least: depth is reversed)
 // of squares of 2 to 64 pixels.
 #include "shaders/scene.glsl"
-#include "techniques/direct/pyramid.glsl"
+#include "shaders/pyramid.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// The depth pyramid, in compute: for any rasterizer.
+#include "passes/depth_pyramid.h"
+
+#include "build_pyramid_comp.h"
+
+namespace isorast {
+
+namespace {
+
+using gpu::Kind;
+
+uint64_t pyramid_bytes(Size size, uint32_t eyes) {
+    uint64_t squares = 0;
+    for (uint32_t level = 1; level <= 6; ++level) {
+        const uint32_t side = 1u << level;
+        squares += uint64_t{(size.width + side - 1) / side} * ((size.height + side - 1) / side);
+    }
+    return sizeof(float) * squares * eyes;
+}
+
+}  // namespace
+
+DepthPyramid::DepthPyramid(const Grid& grid)
+    : device_(grid.device()),
+      build_(gpu::Pipeline::compute(
+          grid.device(), grid.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0),
+          build_pyramid_comp)) {}
+
+void DepthPyramid::fit(const Target& target) {
+    const uint64_t bytes = pyramid_bytes(target.size, target.eyes);
+    if (pyramid_.bytes() != bytes)
+        pyramid_ = gpu::Buffer(device_, bytes, gpu::Buffer::Memory::device, "the depth pyramid");
+}
+
+void DepthPyramid::build(gpu::Commands& commands, const Target& target) {
+    const auto pass = commands.pass("depth pyramid");
+    commands.bind(build_, {target.depth, pyramid_});
+    commands.dispatch((target.size.width + 63) / 64, (target.size.height + 63) / 64, target.eyes);
+    commands.barrier();
+}
+
+}  // namespace isorast

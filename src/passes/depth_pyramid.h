@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// The depth pyramid (HiZ) of what is drawn so far, which shaders/hidden.glsl tests against.
+#pragma once
+#include "grid/grid.h"
+#include "image/target.h"
+
+namespace isorast {
+
+class DepthPyramid {
+public:
+    explicit DepthPyramid(const Grid& grid);
+    // Once a frame, before it: makes what depends on the picture's size.
+    void fit(const Target& target);
+    void build(gpu::Commands& commands, const Target& target);
+    const gpu::Buffer& buffer() const { return pyramid_; }
+
+private:
+    const gpu::Device& device_;
+    gpu::Pipeline build_;
+    gpu::Buffer pyramid_;
+};
+
+}  // namespace isorast
