@@ -49,7 +49,8 @@ struct RecordedFrame {
 // frame of a Renderer is recorded at a time. Barriers before and after the frame are included.
 // Frames must be submitted in the order in which they were recorded. A time step that is not on the
 // GPU is waited for here; without HostDevice::upload_queue it is also read here, and uploaded by
-// submissions to HostDevice::queue.
+// submissions to HostDevice::queue. So does the technique meshlets with new isovalues or a new time
+// step, and waits: frames recorded before must have been submitted then.
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,
                      uint32_t slot);
 
