@@ -238,7 +238,8 @@ struct Render : Command {
         }
         Renderer renderer(gpu, chosen_steps(series, steps, volume), options);
         note_isovalues_outside(volume.name, renderer.value_range());
-        if (options.rasterizer == Rasterizer::automatic && options.technique != "raymarch") {
+        const bool chosen = options.technique == "auto" || options.technique == "direct";
+        if (options.rasterizer == Rasterizer::automatic && chosen) {
             const std::string problem = choose_rasterizer(gpu, volume.type).problem;
             if (!problem.empty())
                 note(

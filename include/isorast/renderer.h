@@ -89,6 +89,7 @@ struct PassTime {
 struct FrameStats {
     std::vector<PassTime> passes;  // in the order of the frame; GPU time
     double total_ms = 0;           // from the first to the last timestamp
+    // Blocks of the grid; those that hold surface, and of these drawn (meshlets: meshlets).
     uint64_t blocks = 0, blocks_active = 0, blocks_drawn = 0;
     double wait_ms = 0;           // until the time step was read and uploaded; 0: it was there
     uint32_t resident_steps = 1;  // time steps on the GPU

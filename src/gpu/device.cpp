@@ -262,19 +262,21 @@ void Device::submit(VkQueue queue, const VkSubmitInfo& info, VkFence fence) cons
 }
 
 VkDeviceMemory Device::allocate(const VkMemoryRequirements& requirements,
-                                VkMemoryPropertyFlags wanted, const char* what) const {
-    for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
-        if (!(requirements.memoryTypeBits & (1u << i))) continue;
-        if ((memory_.memoryTypes[i].propertyFlags & wanted) != wanted) continue;
-        const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                        .allocationSize = requirements.size,
-                                        .memoryTypeIndex = i};
-        VkDeviceMemory memory = VK_NULL_HANDLE;
-        const VkResult result = vkAllocateMemory(device_, &info, nullptr, &memory);
-        if (result == VK_SUCCESS) return memory;
-        if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY && result != VK_ERROR_OUT_OF_HOST_MEMORY)
-            VK_CHECK(result);
-    }
+                                VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags preferred,
+                                const char* what) const {
+    for (const VkMemoryPropertyFlags flags : {wanted | preferred, wanted})
+        for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
+            if (!(requirements.memoryTypeBits & (1u << i))) continue;
+            if ((memory_.memoryTypes[i].propertyFlags & flags) != flags) continue;
+            const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                            .allocationSize = requirements.size,
+                                            .memoryTypeIndex = i};
+            VkDeviceMemory memory = VK_NULL_HANDLE;
+            const VkResult result = vkAllocateMemory(device_, &info, nullptr, &memory);
+            if (result == VK_SUCCESS) return memory;
+            if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY && result != VK_ERROR_OUT_OF_HOST_MEMORY)
+                VK_CHECK(result);
+        }
     throw Error(
         fmt::format("{}: cannot allocate {} bytes for {}; close other programs, or use a "
                     "smaller volume or picture",

@@ -58,10 +58,10 @@ public:
     // Bits of a timestamp that count; 0 when the queue has none.
     uint32_t timestamp_bits() const { return timestamp_bits_; }
 
-    // Allocates for `requirements` in memory that has all of `wanted`, preferring `preferred` as
-    // well.
+    // Allocates for `requirements` in memory that has all of `wanted`, and of `preferred` too where
+    // there is such.
     VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags wanted,
-                            const char* what) const;
+                            VkMemoryPropertyFlags preferred, const char* what) const;
     std::vector<std::string> messages() const;
 
 private:

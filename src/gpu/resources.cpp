@@ -21,11 +21,13 @@ Buffer::Buffer(const Device& device, uint64_t bytes, Memory memory, const char* 
     VK_CHECK(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_));
     VkMemoryRequirements requirements;
     vkGetBufferMemoryRequirements(device.handle(), buffer_, &requirements);
-    const VkMemoryPropertyFlags wanted =
-        memory == Memory::device
-            ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
-            : VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    memory_ = device.allocate(requirements, wanted, what);
+    // The CPU reads uncached memory very slowly.
+    memory_ = memory == Memory::device
+                  ? device.allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, what)
+                  : device.allocate(
+                        requirements,
+                        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                        VK_MEMORY_PROPERTY_HOST_CACHED_BIT, what);
     VK_CHECK(vkBindBufferMemory(device.handle(), buffer_, memory_, 0));
     if (memory == Memory::host)
         VK_CHECK(vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_));
@@ -77,7 +79,7 @@ Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
     VkMemoryRequirements requirements;
     vkGetImageMemoryRequirements(device.handle(), image_, &requirements);
     bytes_ = requirements.size;
-    memory_ = device.allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, what);
+    memory_ = device.allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, what);
     VK_CHECK(vkBindImageMemory(device.handle(), image_, memory_, 0));
     const VkImageViewType type = info.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D_ARRAY;
     view_ = make_view(type, info.format, 0, info.layers);

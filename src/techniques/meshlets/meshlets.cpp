@@ -80,14 +80,14 @@ const Grid& checked(const TechniqueContext& context) {
     const gpu::Device& device = context.grid.device();
     if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
         throw Error(fmt::format(
-            "meshlets: {} cannot run it: {}; use --technique raymarch", device.info().name,
+            "meshlets: {} cannot run it: {}; use --technique direct", device.info().name,
             device.info().why_not_hardware.empty() ? "mesh shaders are not enabled"
                                                    : device.info().why_not_hardware));
     if (context.options.exact) throw Error("meshlets: has no exact way; use --technique raymarch");
     if (context.options.rasterizer == Rasterizer::compute)
         throw Error(
             "meshlets: has no compute rasterizer; use --rasterizer hardware, or --technique "
-            "raymarch");
+            "direct");
     return context.grid;
 }
 
