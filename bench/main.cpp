@@ -77,9 +77,8 @@ Json head_of(const Settings& settings, const Gpu& gpu, int argc, char** argv) {
             {"rows", Json::array()}};
 }
 
-void measure(Gpu& gpu, const Scenario& scenario, const Settings& settings,
-             const std::string& volume, Json& report) {
-    const Subject subject = parse_subject(volume);
+void measure(Gpu& gpu, const Scenario& scenario, const Settings& settings, const Subject& subject,
+             Json& report) {
     Contest contest(gpu, subject, settings, report);
     if (!contest.empty()) contest.measure(scenario.sequences(contest, subject, settings));
 }
@@ -105,14 +104,19 @@ int main(int argc, char** argv) try {
     fmt::print("{}: {}\n{}, {}, commit {}; medians of {} frames in two rounds\n", scenario.name,
                scenario.what, gpu.info().name, gpu.info().driver, ISORAST_COMMIT, settings.frames);
     const auto start = std::chrono::steady_clock::now();
-    write(report, settings.output);  // better now than after minutes
-    for (const std::string& volume : settings.volumes) {
+    // What cannot be read or written is said now, not after minutes.
+    std::vector<Subject> subjects;
+    for (const std::string& volume : settings.volumes)
+        subjects.push_back(parse_subject(volume));
+    write(report, settings.output);
+    for (const Subject& subject : subjects) {
         const size_t first = report["rows"].size();
         try {
-            measure(gpu, scenario, settings, volume, report);
+            measure(gpu, scenario, settings, subject, report);
         } catch (const Error& error) {
-            fmt::print("  left out: {}: {}\n", volume, error.what());
-            report["skipped"].push_back({{"volume", volume}, {"way", ""}, {"why", error.what()}});
+            fmt::print("  left out: {}: {}\n", subject.name, error.what());
+            report["skipped"].push_back(
+                {{"volume", subject.name}, {"way", ""}, {"why", error.what()}});
         }
         print_tables(report["rows"], first);
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

@@ -264,7 +264,13 @@ def main():
         files += sorted(path.glob("*.json")) if path.is_dir() else [path]
     if not files:
         sys.exit(f"plot.py: error: {arguments.paths[0]}: expected .json files of isorast-bench, found none")
-    measured = [results for results in map(Results, files) if results.rows]
+    measured = []
+    for file in files:
+        try:
+            measured.append(Results(file))
+        except (OSError, ValueError, KeyError) as error:
+            sys.exit(f"plot.py: error: {file}: expected a JSON file of isorast-bench, found {error!r}")
+    measured = [results for results in measured if results.rows]
     for results in measured:
         print_tables(results, arguments.ratios)
     if not arguments.tables and not arguments.ratios:

@@ -213,6 +213,10 @@ Settings with_defaults(Settings settings, const Scenario& scenario) {
             if (way.stored() && !scenario.stored) continue;
             if (std::ranges::count(known, way.options.technique)) settings.ways.push_back(words);
         }
+    for (const std::string& words : settings.ways)
+        parse_way(words);
+    for (const std::string& size : settings.sizes)
+        parse_size(size);
     return settings;
 }
 

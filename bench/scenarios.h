@@ -20,7 +20,7 @@ struct Scenario {
 
 const std::vector<Scenario>& scenarios();
 
-// What the user left open; small where `quick`.
+// What the user left open; small where `quick`. Throws Error for words that do not parse.
 Settings with_defaults(Settings settings, const Scenario& scenario);
 
 }  // namespace isorast::bench
