@@ -86,11 +86,11 @@ std::optional<QueueChoice> choose_queue(VkPhysicalDevice physical) {
 std::optional<uint32_t> choose_copy_family(VkPhysicalDevice physical) {
     const auto families = queue_families(physical);
     for (uint32_t i = 0; i < families.size(); ++i) {
-        const VkQueueFlags flags = families[i].queueFlags;
+        // Nothing else, video for one; and whole slices must be allowed.
+        const VkQueueFlags others =
+            families[i].queueFlags & ~(VK_QUEUE_SPARSE_BINDING_BIT | VK_QUEUE_PROTECTED_BIT);
         const auto [x, y, z] = families[i].minImageTransferGranularity;
-        if ((flags & VK_QUEUE_TRANSFER_BIT) && x == 1 && y == 1 && z == 1 &&
-            !(flags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)))
-            return i;
+        if (others == VK_QUEUE_TRANSFER_BIT && x == 1 && y == 1 && z == 1) return i;
     }
     return std::nullopt;
 }

@@ -193,6 +193,7 @@ uint32_t Steps::steps_until(uint32_t number, uint32_t from) const {
 // loop over more steps than fit, all others stay, where the least recently used would be the very
 // one that comes next.
 Step* Steps::make_room(uint32_t number, const std::vector<uint32_t>& in_flight) {
+    if (Step* unused = find(UINT32_MAX)) return unused;
     if (steps_.size() < capacity_) {
         try {
             return &add();
@@ -204,11 +205,6 @@ Step* Steps::make_room(uint32_t number, const std::vector<uint32_t>& in_flight) 
     Step* last = nullptr;
     for (const auto& step : steps_) {
         if (contains(in_flight, step->number)) continue;
-        if (reading_.valid() && step.get() == reading_into_) continue;
-        if (step->number == UINT32_MAX) {
-            last = step.get();
-            break;
-        }
         if (!last || steps_until(step->number, number) > steps_until(last->number, number))
             last = step.get();
     }

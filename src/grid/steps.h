@@ -64,7 +64,7 @@ private:
     Step& get(uint32_t number, const std::vector<uint32_t>& in_flight);
     void read_ahead(uint32_t number, const std::vector<uint32_t>& in_flight);
     Step* find(uint32_t number);
-    // A step to overwrite, for `number`; null when all are in flight.
+    // A step to overwrite, for `number`, while nothing is being read; null when all are in flight.
     Step* make_room(uint32_t number, const std::vector<uint32_t>& in_flight);
     Step& add();
     uint32_t steps_until(uint32_t number, uint32_t from) const;
