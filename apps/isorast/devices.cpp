@@ -39,8 +39,9 @@ std::string describe(const RasterizerChoice& choice) {
     if (!choice.problem.empty())
         return text + fmt::format(" (compute fails its self-test: {})", choice.problem);
     if (choice.hardware_ms > 0)
-        text += fmt::format(" (a small scene: hardware {:.2f} ms, compute {:.2f} ms)",
-                            choice.hardware_ms, choice.compute_ms);
+        text +=
+            fmt::format(" (a small scene: hardware {:.2f} ms with {} culling, compute {:.2f} ms)",
+                        choice.hardware_ms, name_of(choice.occlusion), choice.compute_ms);
     return text;
 }
 
@@ -69,6 +70,7 @@ Json describe(const DeviceInfo& info, size_t number) {
             {"rasterizer", name_of(choice.rasterizer)},
             {"compute_problem", choice.problem},
             {"hardware_ms", choice.hardware_ms},
+            {"hardware_culling", name_of(choice.occlusion)},
             {"compute_ms", choice.compute_ms}};
 }
 

@@ -15,9 +15,6 @@
 namespace isorast {
 
 enum class Shading : uint8_t { gooch, phong, normals, depth, blocks, forward };
-// How occlusion culling finds hidden blocks: by raster proxies, as in the paper (needs the hardware
-// rasterizer), or by a depth pyramid (HiZ). The picture is the same.
-enum class Occlusion : uint8_t { automatic, raster, hiz };
 
 // Two eyes: both pictures beside each other, twice as wide; red-cyan in one picture; or, for those
 // who show them otherwise, the left eye's picture above the right eye's, twice as high.
@@ -108,10 +105,11 @@ std::vector<std::string> techniques();
 
 // The rasterizer that direct uses on this device unless told otherwise. The first time, the compute
 // rasterizer draws a sphere that is compared with the formula, and where there is a choice, both
-// draw a small scene and the faster one wins. The answer is kept in the user's cache directory
-// (XDG_CACHE_HOME or ~/.cache), for this device, driver and version of isorast; where that cannot
-// be written, for the life of the Gpu. `type`: of the volume to be drawn, if there is one; the
-// sphere has the same, so that its shaders are compiled only once.
+// draw a small scene (the hardware rasterizer with either occlusion test) and the faster one wins.
+// The answer is kept in the user's cache directory (XDG_CACHE_HOME or ~/.cache), for this device,
+// driver and version of isorast; where that cannot be written, for the life of the Gpu. `type`: of
+// the volume to be drawn, if there is one; the sphere has the same, so that its shaders are
+// compiled only once.
 RasterizerChoice choose_rasterizer(Gpu& gpu, VoxelType type = VoxelType::u8);
 
 class Renderer {

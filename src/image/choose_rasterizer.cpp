@@ -121,10 +121,11 @@ std::string problem_of_compute(const Gpu& gpu, VoxelType type) {
 }
 
 // The median frame, milliseconds on the clock; waits included, as they are in use.
-double frame_ms(Gpu& gpu, Rasterizer rasterizer) {
+double frame_ms(Gpu& gpu, Rasterizer rasterizer, Occlusion occlusion) {
     using Clock = std::chrono::steady_clock;
     const Volume volume = make_procedural("noise:128:type=u8");
-    Renderer renderer(gpu, volume, {.technique = "direct", .rasterizer = rasterizer});
+    Renderer renderer(gpu, volume,
+                      {.technique = "direct", .rasterizer = rasterizer, .occlusion = occlusion});
     const Frame frame{.isovalues = {0.5}, .camera = orbit(volume, 30, 20), .size = {1280, 720}};
     renderer.state().run(std::vector<Frame>(3, frame));
     std::vector<double> times;
@@ -141,9 +142,14 @@ RasterizerChoice find_choice(Gpu& gpu, VoxelType type, bool hardware) {
     RasterizerChoice choice{.problem = problem_of_compute(gpu, type)};
     const bool compute = choice.problem.empty();
     // A CPU has no rasterizer to spare: mesh shaders there cost seconds to compile and always lose.
-    if (hardware && compute && !gpu.device().is_cpu()) {
-        choice.hardware_ms = frame_ms(gpu, Rasterizer::hardware);
-        choice.compute_ms = frame_ms(gpu, Rasterizer::compute);
+    if (hardware && !gpu.device().is_cpu()) {
+        choice.hardware_ms = frame_ms(gpu, Rasterizer::hardware, Occlusion::hiz);
+        if (gpu.device().features().fragment_stores) {
+            const double raster_ms = frame_ms(gpu, Rasterizer::hardware, Occlusion::raster);
+            if (raster_ms < choice.hardware_ms) choice.occlusion = Occlusion::raster;
+            choice.hardware_ms = std::min(choice.hardware_ms, raster_ms);
+        }
+        if (compute) choice.compute_ms = frame_ms(gpu, Rasterizer::compute, Occlusion::hiz);
     }
     if (compute && choice.compute_ms <= choice.hardware_ms)
         choice.rasterizer = Rasterizer::compute;
@@ -171,17 +177,21 @@ fs::path cache_file(const std::string& key) {
     return folder / "isorast" / fmt::format("rasterizer-{:016x}", hash);
 }
 
-// The key, the rasterizer, its problem, the times: a line each. Anything else counts as nothing.
+// The key, the rasterizer, its problem, the times and the occlusion test: a line each. Anything
+// else counts as nothing.
 std::optional<RasterizerChoice> read_choice(const fs::path& path, const std::string& key) {
     std::ifstream file(path);
-    std::string found, word;
+    std::string found, word, occlusion;
     RasterizerChoice choice;
     if (!std::getline(file, found) || !std::getline(file, word) ||
-        !std::getline(file, choice.problem) || !(file >> choice.hardware_ms >> choice.compute_ms))
+        !std::getline(file, choice.problem) ||
+        !(file >> choice.hardware_ms >> choice.compute_ms >> occlusion))
         return std::nullopt;
     const auto rasterizer = parse_rasterizer(word);
-    if (found != key || !rasterizer) return std::nullopt;
+    const auto test = parse_occlusion(occlusion);
+    if (found != key || !rasterizer || !test) return std::nullopt;
     choice.rasterizer = *rasterizer;
+    choice.occlusion = *test;
     return choice;
 }
 
@@ -194,8 +204,9 @@ void write_choice(const fs::path& path, const std::string& key, const Rasterizer
     beside += fmt::format(".{:x}", std::chrono::steady_clock::now().time_since_epoch().count());
     {
         std::ofstream file(beside);
-        file << fmt::format("{}\n{}\n{}\n{} {}\n", key, name_of(choice.rasterizer), choice.problem,
-                            choice.hardware_ms, choice.compute_ms);
+        file << fmt::format("{}\n{}\n{}\n{} {} {}\n", key, name_of(choice.rasterizer),
+                            choice.problem, choice.hardware_ms, choice.compute_ms,
+                            name_of(choice.occlusion));
         if (!file.flush()) return;
     }
     fs::rename(beside, path, ignored);

@@ -18,15 +18,16 @@ namespace {
 RendererOptions resolved(Gpu& gpu, VoxelType type, RendererOptions options) {
     const bool automatic = options.technique == "auto";
     if (automatic) options.technique = options.exact ? "raymarch" : "direct";
-    if (options.technique != "direct" || options.rasterizer != Rasterizer::automatic)
-        return options;
-    if (options.occlusion == Occlusion::raster) {
-        options.rasterizer = Rasterizer::hardware;
-        return options;
-    }
+    if (options.technique != "direct" || options.rasterizer == Rasterizer::compute) return options;
+    if (options.occlusion == Occlusion::raster) options.rasterizer = Rasterizer::hardware;
+    const bool choose_test =
+        options.occlusion == Occlusion::automatic && !gpu.device().is_cpu();  // HiZ there
+    if (options.rasterizer == Rasterizer::hardware && !choose_test) return options;
     const RasterizerChoice choice = choose_rasterizer(gpu, type);
-    options.rasterizer = choice.rasterizer;
-    if (choice.rasterizer != Rasterizer::automatic) return options;
+    if (options.rasterizer == Rasterizer::automatic) options.rasterizer = choice.rasterizer;
+    if (options.rasterizer == Rasterizer::hardware && choose_test)
+        options.occlusion = choice.occlusion;
+    if (options.rasterizer != Rasterizer::automatic) return options;
     if (!automatic)
         throw Error(
             fmt::format("direct: {} has no hardware rasterizer ({}) and fails the compute "
