@@ -61,15 +61,17 @@ TEST_F(GpuTest, TheChoiceIsRememberedForDeviceAndDriver) {
 
     // It is read: times that nobody measured come back.
     const std::string key = text.substr(0, text.find('\n') + 1);
-    std::ofstream(files[0]) << key << "hardware\nplanted\n12 34\n";
+    std::ofstream(files[0]) << key << "hardware\nplanted\n12 34 raster\n";
     const RasterizerChoice planted = choose_anew(gpu);
     EXPECT_EQ(planted.rasterizer, Rasterizer::hardware);
     EXPECT_EQ(planted.problem, "planted");
     EXPECT_EQ(planted.hardware_ms, 12);
     EXPECT_EQ(planted.compute_ms, 34);
+    EXPECT_EQ(planted.occlusion, Occlusion::raster);
 
     // Half a file, or another device's, is as good as none.
-    for (const std::string& bad : {key, key + "hardware\n", std::string("x\ncompute\n\n1 2\n")}) {
+    for (const std::string& bad :
+         {key, key + "hardware\n", std::string("x\ncompute\n\n1 2 hiz\n")}) {
         std::ofstream(files[0]) << bad;
         EXPECT_EQ(choose_anew(gpu).rasterizer, found.rasterizer);
         EXPECT_NE(text_of(files[0]), bad);
