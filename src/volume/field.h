@@ -231,7 +231,7 @@ FIELD_FUNCTION float field_head(FieldMotion m, float x, float y, float z) {
 FIELD_FUNCTION float field_vessels(FieldMotion m, float x, float y, float z) {
     FIELD_PRECISE float tubes = 0.0f, frequency = 2.5f;
     for (uint level = 0u; level < 2u; ++level) {
-        FIELD_PRECISE float a = frequency * x + m.swing, b = frequency * y + m.swell;
+        FIELD_PRECISE float a = frequency * x + 0.5f * m.swing, b = frequency * y + 0.5f * m.swell;
         FIELD_PRECISE float c = frequency * z;
         FIELD_PRECISE float u = field_value_noise(a, b, c, 3u + level) - 0.5f;
         FIELD_PRECISE float v = field_value_noise(a + 0.5f, b + 0.5f, c + 0.5f, 7u + level) - 0.5f;
