@@ -51,7 +51,8 @@ protected:
     }
 
     // A renderer for each technique and rasterizer that the device has. Every technique must have
-    // one. RendererOptions::exact goes to those that know it.
+    // one, unless only graphics can draw it and that is not there. RendererOptions::exact goes to
+    // those that know it.
     std::vector<Lane> lanes(const isorast::Volume& volume, isorast::RendererOptions options = {}) {
         std::vector<Lane> result;
         for (const std::string& technique : isorast::techniques()) {
@@ -67,7 +68,9 @@ protected:
                     add_lane(volume, stepping, result, refusals);
                 }
             }
-            EXPECT_GT(result.size(), before) << technique << " refuses:" << refusals;
+            EXPECT_TRUE(result.size() > before || GRAPHICS_CRASHES ||
+                        !gpu.info().why_not_hardware.empty())
+                << technique << " refuses:" << refusals;
         }
         EXPECT_FALSE(result.empty());
         return result;
