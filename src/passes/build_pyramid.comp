@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 64x64 pixels of one eye. Thread: 4x4 of them. Out: the farthest depth (least: depth is reversed)
-// of squares of 2 to 64 pixels.
+// Workgroup: 64x64 pixels of one eye. Thread: 4x4 of them. Out: the farthest depth (least: depth is
+// reversed) of squares of 2 to 64 pixels.
 #include "shaders/scene.glsl"
 #include "shaders/pyramid.glsl"
 
@@ -14,13 +14,14 @@ shared float farthest[16][16];
 
 // Pixels outside the picture hide nothing and show nothing: as near as can be.
 float depth_at(uvec2 pixel) {
-    return all(lessThan(pixel, frame.size.xy)) ? texelFetch(depth, ivec3(pixel, gl_GlobalInvocationID.z), 0).r : 1.0;
+    const ivec3 texel = ivec3(pixel, gl_GlobalInvocationID.z);
+    return all(lessThan(pixel, frame.size.xy)) ? texelFetch(depth, texel, 0).r : 1.0;
 }
 
 void store(uint level, uvec2 square, float value) {
     const uvec2 size = pyramid_size(level);
-    if (all(lessThan(square, size)))
-        pyramid[pyramid_offset(gl_GlobalInvocationID.z, level) + square.x + size.x * square.y] = value;
+    const uint first = pyramid_offset(gl_GlobalInvocationID.z, level);
+    if (all(lessThan(square, size))) pyramid[first + square.x + size.x * square.y] = value;
 }
 
 void main() {

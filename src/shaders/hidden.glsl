@@ -1,8 +1,8 @@
 // The occlusion test by a depth pyramid. Needs pyramid[], and shaders/frustum.glsl.
 #include "shaders/pyramid.glsl"
 
-// True if depth already drawn is nearer than all of a box in voxel space, at every pixel that the box
-// can touch.
+// True if depth already drawn is nearer than all of a box in voxel space, at every pixel that the
+// box can touch.
 bool is_hidden(uint eye, vec3 low, vec3 high) {
     Extent extent;
     if (!project(eye, low, high, extent)) return false;
