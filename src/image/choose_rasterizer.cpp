@@ -86,8 +86,9 @@ public:
         const double near = info.depth_range.x, far = info.depth_range.y;
         uint32_t wrong = 0;
         for (uint32_t i = 0; i < PICTURE * PICTURE; ++i) {
-            const double x = ((i % PICTURE + 0.5) / PICTURE - 0.5) * height;
-            const double y = ((i / PICTURE + 0.5) / PICTURE - 0.5) * height;
+            const uint32_t column = i % PICTURE, row = i / PICTURE;
+            const double x = ((column + 0.5) / PICTURE - 0.5) * height;
+            const double y = ((row + 0.5) / PICTURE - 0.5) * height;
             const double aside = std::hypot(x, y), reversed = double(depth_.data<float>()[i]);
             const double above = DISTANCE - (far - reversed * (far - near));  // the middle
             if (reversed > 0)
