@@ -54,6 +54,7 @@ protected:
         const std::vector<std::pair<std::string, Rasterizer>> ways{
             {"direct", Rasterizer::hardware},
             {"direct", Rasterizer::compute},
+            {"meshlets", Rasterizer::hardware},
             {"raymarch", Rasterizer::compute}};
         for (const auto& [technique, rasterizer] : ways) {
             if (rasterizer == Rasterizer::hardware &&
@@ -112,6 +113,7 @@ TEST_F(SeriesTest, EachStepOfAFormulaIsThatStepAlone) {
 }
 
 TEST_F(SeriesTest, EachStepIsThatStepAloneInBricks) {
+    if (!gpu.device().features().nonuniform_textures) GTEST_SKIP();
     const auto volumes = sampled_steps("noise:32:octaves=3:type=u8:steps=3");
     expect_each_step_alone(series_of(volumes), {.max_brick_side = 19});
 }
