@@ -21,8 +21,9 @@ constexpr uint32_t ROUNDS = 2;
 // Frames shorter than this are measured SHORT_TIMES as often: 200 frames in place of 40.
 constexpr double SHORT_MS = 2;
 constexpr uint32_t SHORT_TIMES = 5, LEAST_FOR_SHORT = 20;
-// Ways that differ by more do not draw the same surface.
-constexpr double LEAST_OVERLAP = 0.9, MOST_DEPTH_VOXELS = 3;
+// Ways that differ by more do not draw the same surface: 3 voxels on average, or a hundredth of the
+// volume, as one speck that half-cell steps pass over is as wrong as what lies behind it is far.
+constexpr double LEAST_OVERLAP = 0.9, MOST_DEPTH_VOXELS = 3, MOST_DEPTH_SHARE = 0.01;
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -95,6 +96,8 @@ void Contest::skip(const std::string& way, const std::string& where, const std::
 
 void Contest::compare(const Sequence& sequence, std::vector<Taken>& taken) {
     const auto spacing = subject_.first.affine.spacing();
+    const double most_depth =
+        std::max(MOST_DEPTH_VOXELS, MOST_DEPTH_SHARE * std::ranges::max(subject_.first.dims));
     std::vector<Image> truth;  // the first way's pictures
     for (size_t i = 0; i < contenders_.size(); ++i) {
         Contender& contender = contenders_[i];
@@ -115,7 +118,7 @@ void Contest::compare(const Sequence& sequence, std::vector<Taken>& taken) {
                                             {"way", contender.way.words},
                                             {"overlap", found.overlap},
                                             {"depth_voxels", found.depth_voxels}});
-            if (found.overlap < LEAST_OVERLAP || found.depth_voxels > MOST_DEPTH_VOXELS)
+            if (found.overlap < LEAST_OVERLAP || found.depth_voxels > most_depth)
                 throw Error(
                     fmt::format("another picture than {}: silhouettes overlap by {:.3f}, "
                                 "depths differ by {:.2f} voxels",
