@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 8x8 pixels of one eye. Thread: one pixel. Out: its colour and its distance, from the technique's
-// depth: unproject, move the hit onto the trilinear surface, take the gradient, shade. One pass for
-// all techniques.
+#extension GL_EXT_control_flow_attributes : require
+// Workgroup: 16x16 pixels of one eye. Thread: four of them, whose depths it fetches at once. Out: their
+// colour and distance, from the technique's depth: unproject, move the hit onto the trilinear
+// surface, take the gradient, shade. One pass for all techniques.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
@@ -14,6 +15,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 1) const bool WRITE_COLOR = true;     // and refine the hit
 layout(constant_id = 2) const bool WRITE_DISTANCE = false;
 layout(constant_id = 3) const bool MARK_VISIBLE = false;   // for the next frame's culling
+layout(constant_id = 4) const bool FILTERED = false;       // gradients through the texture unit
 
 layout(set = 1, binding = 0) uniform texture2DArray depth;
 layout(set = 1, binding = 1) uniform utexture2DArray surface_numbers;
@@ -90,7 +92,8 @@ vec4 shade(Ray ray, Hit hit, vec3 surface_color) {
         const float near = frame.depth_range.x, far = frame.depth_range.y;
         return vec4(vec3(mix(0.95, 0.05, clamp((hit.t - near) / (far - near), 0.0, 1.0))), 1.0);
     }
-    const vec3 gradient = field_gradient(p);
+    const vec3 gradient =
+        FILTERED && VOXEL_BITS < 32 ? field_gradient_filtered(p) : field_gradient(p);
     const bool outward = hit.refined ? hit.entering : dot(gradient, ray.direction) > 0.0;
     const vec3 normal = world_normal(gradient, ray.direction, outward);
     if (frame.size.w == NORMALS) return vec4(0.5 + 0.5 * normal, 1.0);
@@ -100,10 +103,7 @@ vec4 shade(Ray ray, Hit hit, vec3 surface_color) {
     return vec4(gooch(surface_color, normal, direction), 1.0);
 }
 
-void main() {
-    const ivec3 pixel = ivec3(gl_GlobalInvocationID);  // z: the eye
-    if (any(greaterThanEqual(pixel.xy, ivec2(frame.size.xy)))) return;
-    const float z = texelFetch(depth, pixel, 0).r;
+void shade_pixel(ivec3 pixel, float z) {
     vec4 result = frame.background;
     float t = uintBitsToFloat(0x7f800000u);  // infinity
     if (z > 0.0) {
@@ -119,4 +119,17 @@ void main() {
     }
     if (WRITE_COLOR) imageStore(color, pixel, result);
     if (WRITE_DISTANCE) imageStore(distances, pixel, vec4(t));
+}
+
+void main() {
+    const ivec2 first = ivec2(16 * gl_WorkGroupID.xy + gl_LocalInvocationID.xy);
+    const ivec2 last = ivec2(frame.size.xy) - 1;
+    const int eye = int(gl_GlobalInvocationID.z);
+    vec4 z;
+    for (int i = 0; i < 4; ++i)
+        z[i] = texelFetch(depth, ivec3(min(first + 8 * ivec2(i & 1, i >> 1), last), eye), 0).r;
+    [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+        const ivec2 pixel = first + 8 * ivec2(i & 1, i >> 1);
+        if (all(lessThanEqual(pixel, last))) shade_pixel(ivec3(pixel, eye), z[i]);
+    }
 }

@@ -17,7 +17,7 @@ const gpu::Pipeline& Shade::pipeline(bool color, bool distance, bool mark) {
         const std::vector bindings{Kind::texture, Kind::texture, Kind::image, Kind::image,
                                    Kind::buffer};
         pipeline = gpu::Pipeline::compute(
-            grid_.device(), grid_.pipeline_info("shade", bindings, 0, {color, distance, mark}),
+            grid_.device(), grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, grid_.can_filter()}),
             grid_.pick(shade_comp, shade_comp_bricked));
     }
     return pipeline;
@@ -30,7 +30,7 @@ void Shade::record(gpu::Commands& commands, const Frame& frame, const Target& ta
     commands.bind(pipeline(color, frame.want_depth, mark),
                   {target.depth, target.surfaces, target.color, target.distances,
                    mark ? *target.visible_blocks : no_blocks_});
-    commands.dispatch((target.size.width + 7) / 8, (target.size.height + 7) / 8, target.eyes);
+    commands.dispatch((target.size.width + 15) / 16, (target.size.height + 15) / 16, target.eyes);
     commands.barrier();
 }
 

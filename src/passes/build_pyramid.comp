@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Workgroup: 64x64 pixels of one eye. Thread: 4x4 of them. Out: the farthest depth (least: depth is
 // reversed) of squares of 2 to 64 pixels.
 #include "shaders/scene.glsl"
@@ -12,10 +13,9 @@ layout(set = 1, binding = 1, std430) writeonly buffer Pyramid { float pyramid[];
 
 shared float farthest[16][16];
 
-// Pixels outside the picture hide nothing and show nothing: as near as can be.
+// Beyond the picture lies its last pixel again, which changes no minimum.
 float depth_at(uvec2 pixel) {
-    const ivec3 texel = ivec3(pixel, gl_GlobalInvocationID.z);
-    return all(lessThan(pixel, frame.size.xy)) ? texelFetch(depth, texel, 0).r : 1.0;
+    return texelFetch(depth, ivec3(min(pixel, frame.size.xy - 1), gl_GlobalInvocationID.z), 0).r;
 }
 
 void store(uint level, uvec2 square, float value) {
@@ -26,12 +26,13 @@ void store(uint level, uvec2 square, float value) {
 
 void main() {
     const uvec2 thread = gl_LocalInvocationID.xy, corner = 4 * gl_GlobalInvocationID.xy;
+    float pixels[16];
+    [[unroll]] for (uint i = 0; i < 16; ++i) pixels[i] = depth_at(corner + uvec2(i & 3, i >> 2));
     float least = 1.0;
-    for (uint i = 0; i < 4; ++i) {
-        const uvec2 pixel = corner + 2 * uvec2(i & 1, i >> 1);
-        const float value = min(min(depth_at(pixel), depth_at(pixel + uvec2(1, 0))),
-                                min(depth_at(pixel + uvec2(0, 1)), depth_at(pixel + uvec2(1, 1))));
-        store(1, pixel / 2, value);
+    [[unroll]] for (uint i = 0; i < 16; i += i == 2 ? 6 : 2) {
+        const float value =
+            min(min(pixels[i], pixels[i + 1]), min(pixels[i + 4], pixels[i + 5]));
+        store(1, (corner + uvec2(i & 3, i >> 2)) / 2, value);
         least = min(least, value);
     }
     store(2, gl_GlobalInvocationID.xy, least);

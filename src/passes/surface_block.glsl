@@ -1,7 +1,7 @@
 // One block in the passes that extract a surface: the signs of its 9x9x9 corners as 81 corner rows,
 // and the edges that belong to it. An edge belongs to the block that its lower corner lies in; the
 // last block along an axis also owns the volume's border plane. So each edge has one owner.
-#include "shaders/cell_rows.glsl"
+#include "shaders/cases.glsl"
 
 const uint CORNER_ROWS = 81, THREADS = 64;
 

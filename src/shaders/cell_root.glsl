@@ -37,9 +37,10 @@ float solve_between(vec4 cubic, float a, float b) {
     float fa = cubic_at(cubic, a), fb = cubic_at(cubic, b);
     float s = a;
     for (int i = 0; i < 10; ++i) {
+        const float last = s;
         s = fa == fb ? 0.5 * (a + b) : clamp((a * fb - b * fa) / (fb - fa), a, b);
         const float f = cubic_at(cubic, s);
-        if (abs(b - a) < 1e-6 || f == 0.0) break;
+        if (s == last || f == 0.0) break;
         if ((f >= 0.0) == (fb >= 0.0)) {
             b = s;
             fb = f;

@@ -1,6 +1,5 @@
 // Rows of corners and of cells along x, seen as bits: one bit a corner says "inside"; what follows
-// from it, edges and cells that the surface crosses, follows for a whole row at a time. Needs
-// cases[], the table of marching cubes.
+// from it, edges and cells that the surface crosses, follows for a whole row at a time.
 
 // Corner rows have 9 corners, cell rows 8 cells; a block has 9 corner rows along y.
 uint corner_row(uint y, uint z) { return y + 9 * z; }
@@ -59,19 +58,4 @@ uint occupied_cells(CellRow row) {
 uint cell_case(CellRow row, uint x) {
     const uvec4 pairs = uvec4(row.a, row.b, row.c, row.d) >> x & 3u;
     return pairs.x | pairs.y << 2 | pairs.z << 4 | pairs.w << 6;
-}
-
-uint triangle_count(uint cell_case_index) { return cases[cell_case_index].y >> 28; }
-
-uint row_triangles(CellRow row, uint cells) {
-    uint count = 0;
-    for (uint left = occupied_cells(row) & cells; left != 0; left &= left - 1)
-        count += triangle_count(cell_case(row, findLSB(left)));
-    return count;
-}
-
-// The edge on which corner `i` of a case's triangle `number` lies.
-uint triangle_edge(uvec2 case_entry, uint number, uint i) {
-    const uint nibble = 3 * number + i;
-    return (nibble < 8 ? case_entry.x >> 4 * nibble : case_entry.y >> 4 * (nibble - 8)) & 15u;
 }

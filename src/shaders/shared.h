@@ -29,6 +29,12 @@ ISORAST_CONSTANT uint GROUP_X = 4, GROUP_Y = 4, GROUP_Z = 2, GROUP_BLOCKS = 32;
 // takes 2^19 quartets, 32768 in a row: with eight workgroups each, the most that every device can
 // launch at once (2^22) and along an axis (65535).
 ISORAST_CONSTANT uint QUARTETS = 8, DRAW_QUARTETS = 1 << 19, DRAW_ROW = 1 << 15;
+// A draw of a list: indirect arguments, workgroups for quartets along x and y and for the blocks of
+// each along z; in a list's first draw, how many quartets the list holds.
+struct Draw {
+    uint x, y, z;
+    uint quartets;
+};
 // Most workgroups that one list-driven dispatch starts; they loop over longer lists.
 ISORAST_CONSTANT uint MAX_LIST_GROUPS = 32768;
 ISORAST_CONSTANT uint MAX_LEVELS = 30;  // of the min-max pyramid: any number of blocks a side
@@ -82,6 +88,7 @@ struct Counters {
 };
 
 #ifdef __cplusplus
+static_assert(sizeof(Draw) == 16);
 static_assert(sizeof(GridInfo) == 16 * (6 + MAX_LEVELS));
 static_assert(sizeof(EyeInfo) == 64 + 16 * (6 + 6 + MAX_CLIPS));
 static_assert(sizeof(FrameInfo) ==

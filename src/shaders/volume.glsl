@@ -119,6 +119,18 @@ vec3 field_gradient(vec3 p) {
     return gradient;
 }
 
+// The same through the sampler: six of its samples in place of 32 voxels. Not for floats, which may
+// not be finite.
+vec3 field_gradient_filtered(vec3 p) {
+    const Brick brick = brick_of(cell_of(p));
+    const vec3 last = vec3(grid.voxels.xyz) - 1.0, above = min(p + 1.0, last), below = max(p - 1.0, 0.0);
+    vec3 gradient;
+    gradient.x = sample_filtered(brick, vec3(above.x, p.yz)) - sample_filtered(brick, vec3(below.x, p.yz));
+    gradient.y = sample_filtered(brick, vec3(p.x, above.y, p.z)) - sample_filtered(brick, vec3(p.x, below.y, p.z));
+    gradient.z = sample_filtered(brick, vec3(p.xy, above.z)) - sample_filtered(brick, vec3(p.xy, below.z));
+    return gradient / max(above - below, 1e-6);
+}
+
 vec3 world_direction(vec3 direction) {
     return normalize(direction * mat3(frame.world_x.xyz, frame.world_y.xyz, frame.world_z.xyz));
 }

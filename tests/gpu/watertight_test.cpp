@@ -11,8 +11,8 @@
 #include "gpu/gpu_fixture.h"
 #include "image/view.h"
 #include "rasterize_counting.h"
-#include "shaders/marching_cubes.h"
-#include "techniques/direct/culling.h"
+#include "rasterize_large_counting.h"
+#include "techniques/direct/rasterizer.h"
 
 namespace {
 
@@ -20,15 +20,16 @@ using namespace isorast;
 using gpu::Kind;
 using Memory = gpu::Buffer::Memory;
 
+constexpr uint32_t SNAPPED = 1;  // as on a GPU
+
 class Counting {
 public:
     Counting(const gpu::Device& device, const Volume& volume, Size size)
         : grid_(device, series_of({&volume, 1}), 0, 0),
-          culling_(grid_, make_depth_pyramid(grid_), 1),
+          culling_(grid_, make_depth_pyramid(grid_), 1, /* two_sizes= */ true),
           placement_{volume.affine, volume.dims},
-          bytes_(uint64_t{4} * size.width * size.height) {
-        const CaseTable table = marching_cubes_table();
-        cases_ = gpu::Buffer(device, sizeof(table.packed), Memory::device, "a test");
+          bytes_(uint64_t{4} * size.width * size.height),
+          table_(upload_triangle_table(device)) {
         counts_ =
             gpu::Texture(device,
                          {.format = VK_FORMAT_R32_UINT,
@@ -37,14 +38,16 @@ public:
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT},
                          "a test");
         read_ = gpu::Buffer(device, bytes_, Memory::host, "a test");
-        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::image, Kind::image};
-        pipeline_ = gpu::Pipeline::compute(
-            device, grid_.pipeline_info("counting", bindings, 8, {/* CLIPPED= */ 0}),
-            rasterize_counting);
-        gpu::run_once(device, [&](gpu::Commands& commands) {
-            commands.update(cases_, 0, table.packed.data(), sizeof(table.packed));
-            commands.discard_to_general(counts_);
-        });
+        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
+                                   Kind::image};
+        const std::array<std::span<const uint32_t>, 2> code{rasterize_counting,
+                                                            rasterize_large_counting};
+        for (size_t i = 0; i < code.size(); ++i)
+            pipelines_[i] = gpu::Pipeline::compute(
+                device, grid_.pipeline_info("counting", bindings, 12, {/* CLIPPED= */ 0, SNAPPED}),
+                code[i]);
+        gpu::run_once(device,
+                      [&](gpu::Commands& commands) { commands.discard_to_general(counts_); });
     }
 
     // Front faces less back faces, of each pixel.
@@ -57,9 +60,13 @@ public:
             commands.clear(counts_, {});
             commands.barrier();
             culling_.select(commands, 0, Culling::Select::all);
-            commands.bind(pipeline_, {culling_.drawn_blocks(), cases_, counts_, counts_});
-            commands.push(std::array<uint32_t, 2>{0, 0});
-            commands.dispatch_indirect(culling_.draws(), 0);
+            for (const auto size : {Culling::Size::small, Culling::Size::large}) {
+                const uint32_t draw = culling_.first_draw(size);
+                commands.bind(pipelines_[size_t(size)],
+                              {culling_.draws(), culling_.drawn_blocks(), table_, counts_, counts_});
+                commands.push(std::array<uint32_t, 3>{0, 0, draw});
+                commands.dispatch_indirect(culling_.draws(), draw * sizeof(shared::Draw));
+            }
             commands.barrier();
             commands.copy_to_buffer(counts_, read_);
         });
@@ -71,9 +78,9 @@ private:
     Culling culling_;
     Placement placement_;
     uint64_t bytes_;
-    gpu::Buffer cases_, read_;
+    gpu::Buffer table_, read_;
     gpu::Texture counts_;
-    gpu::Pipeline pipeline_;
+    std::array<gpu::Pipeline, 2> pipelines_;  // for small and for large blocks
 };
 
 uint64_t not_zero(std::span<const int32_t> counts) {

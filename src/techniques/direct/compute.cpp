@@ -5,8 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "clear_depth_comp.h"
+#include "gpu/device.h"
 #include "rasterize_comp.h"
+#include "rasterize_large.h"
+#include "rasterize_large_numbered.h"
 #include "rasterize_numbered.h"
+#include "shaders/marching_cubes.h"
 #include "techniques/direct/rasterizer.h"
 
 namespace isorast {
@@ -15,54 +20,103 @@ namespace {
 
 using gpu::Commands;
 using gpu::Kind;
+using Size = Culling::Size;
 
 struct Push {
-    uint32_t draw, surface;
+    uint32_t draw, surface, first_draw;
 };
 
 class ComputeRasterizer final : public BlockRasterizer {
 public:
-    ComputeRasterizer(const Grid& grid, const gpu::Buffer& cases) : grid_(grid), cases_(cases) {}
+    explicit ComputeRasterizer(const Grid& grid)
+        : grid_(grid),
+          triangle_table_(upload_triangle_table(grid.device())),
+          clear_(gpu::Pipeline::compute(
+              grid.device(), grid.pipeline_info("clear depth", {Kind::image}, 0),
+              clear_depth_comp)) {}
 
     void clear(Commands& commands, const Frame&, const Target& target) const override {
-        commands.clear(target.depth, {});
-        commands.barrier();
+        commands.bind(clear_, {gpu::Binding(target.depth.bits_view())});
+        commands.dispatch((target.size.width + 31) / 32, (target.size.height + 31) / 32,
+                          target.eyes);
     }
 
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override {
-        commands.bind(pipeline(frame), {culling.drawn_blocks(), cases_,
-                                        gpu::Binding(target.depth.bits_view()), target.surfaces});
-        for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
-            commands.push(Push{draw, surface});
-            commands.dispatch_indirect(culling.draws(), draw * sizeof(VkDispatchIndirectCommand));
+        for (const Size size : {Size::large, Size::small}) {
+            commands.bind(pipeline(frame, size),
+                          {culling.draws(), culling.drawn_blocks(), triangle_table_,
+                           gpu::Binding(target.depth.bits_view()), target.surfaces});
+            const uint32_t first = culling.first_draw(size);
+            for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
+                commands.push(Push{draw, surface, first});
+                commands.dispatch_indirect(culling.draws(), (first + draw) * sizeof(shared::Draw));
+            }
         }
         commands.barrier();
     }
 
+    uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
+
 private:
-    const gpu::Pipeline& pipeline(const Frame& frame) {
+    const gpu::Pipeline& pipeline(const Frame& frame, Size size) {
         const bool numbered = frame.isovalues.size() > 1, clipped = !frame.clips.empty();
-        gpu::Pipeline& pipeline = pipelines_[size_t(numbered) + 2 * clipped];
+        const bool large = size == Size::large;
+        gpu::Pipeline& pipeline = pipelines_[size_t(numbered) + 2 * clipped + 4 * large];
         if (pipeline) return pipeline;
-        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::image, Kind::image};
+        using Code = std::span<const uint32_t>;
+        const Code one = grid_.pick(rasterize_comp, rasterize_comp_bricked);
+        const Code one_large = grid_.pick(rasterize_large, rasterize_large_bricked);
+        const Code several = grid_.pick(rasterize_numbered, rasterize_numbered_bricked);
+        const Code several_large =
+            grid_.pick(rasterize_large_numbered, rasterize_large_numbered_bricked);
+        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
+                                   Kind::image};
+        const bool snapped = !grid_.device().is_cpu();
         pipeline = gpu::Pipeline::compute(
-            grid_.device(), grid_.pipeline_info("rasterize", bindings, sizeof(Push), {clipped}),
-            numbered ? grid_.pick(rasterize_numbered, rasterize_numbered_bricked)
-                     : grid_.pick(rasterize_comp, rasterize_comp_bricked));
+            grid_.device(),
+            grid_.pipeline_info("rasterize", bindings, sizeof(Push), {clipped, snapped}),
+            large ? (numbered ? several_large : one_large) : (numbered ? several : one));
         return pipeline;
     }
 
     const Grid& grid_;
-    const gpu::Buffer& cases_;
-    std::array<gpu::Pipeline, 4> pipelines_;  // made when first needed
+    gpu::Buffer triangle_table_;
+    gpu::Pipeline clear_;
+    std::array<gpu::Pipeline, 8> pipelines_;  // made when first needed
 };
+
+// Where an edge of a cell is found from the cell's own corner row and place in it: rows on, and
+// bits on in edge_bits (cell_rows.glsl).
+uint32_t place_of_edge(uint32_t edge) {
+    const uint32_t axis = edge >> 2, low = edge & 1, high = edge >> 1 & 1;
+    const uint32_t rows = axis == 0 ? low + 9 * high : axis == 1 ? 9 * high : high;
+    const uint32_t bits = axis == 0 ? 0 : axis == 1 ? 8 + low : 17 + low;
+    return rows | bits << 4;
+}
 
 }  // namespace
 
-std::unique_ptr<BlockRasterizer> make_compute_rasterizer(const Grid& grid,
-                                                         const gpu::Buffer& cases) {
-    return std::make_unique<ComputeRasterizer>(grid, cases);
+gpu::Buffer upload_triangle_table(const gpu::Device& device) {
+    constexpr uint32_t MOST = 5;  // triangles in a cell
+    const CaseTable cases = marching_cubes_table();
+    std::array<uint32_t, 256 * MOST> table{};
+    for (uint32_t cell_case = 0; cell_case < 256; ++cell_case) {
+        const uint32_t count = cases.triangle_count(cell_case);
+        for (uint32_t corner = 0; corner < 3 * count; ++corner)
+            table[MOST * cell_case + corner / 3] |=
+                place_of_edge(cases.edge(cell_case, corner)) << 9 * (corner % 3);
+        table[MOST * cell_case] |= count << 29;
+    }
+    gpu::Buffer buffer(device, sizeof(table), gpu::Buffer::Memory::device, "marching cubes");
+    gpu::run_once(device, [&](Commands& commands) {
+        commands.update(buffer, 0, table.data(), sizeof(table));
+    });
+    return buffer;
+}
+
+std::unique_ptr<BlockRasterizer> make_compute_rasterizer(const Grid& grid) {
+    return std::make_unique<ComputeRasterizer>(grid);
 }
 
 }  // namespace isorast

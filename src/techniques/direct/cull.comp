@@ -1,84 +1,123 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: one active group at a time. Thread: one block. Out: the list of blocks to draw
+// Workgroup: four active groups at a time. Thread: one block. Out: the list of blocks to draw
 // and the indirect arguments to draw it. Culling is in two passes (Kreskowski 2022, section 3.5 and
 // figure 2): blocks that the last frame saw are drawn first; then those of all others that they do
 // not hide, by a depth pyramid here, or as raster proxies have found before.
 #include "shaders/scene.glsl"
+#include "techniques/direct/limits.glsl"
 #include "techniques/direct/list.glsl"
 #include "techniques/direct/active_groups.glsl"
 #include "shaders/frustum.glsl"
 
-layout(local_size_x = 32) in;
+layout(local_size_x = CULL_GROUPS * GROUP_BLOCKS) in;
 
 const uint ALL = 0, SEEN = 1, UNSEEN = 2, TESTED = 3;
 layout(constant_id = 1) const uint SELECT = ALL;
+layout(constant_id = 2) const bool TWO_SIZES = false;  // a list of its own for large blocks
 
-// Indirect arguments: workgroups for quartets along x and y, and for the blocks of each along z.
-struct DrawArguments {
-    uint x, y, z;
-};
-layout(set = 1, binding = 1, std430) buffer Draws { DrawArguments draws[]; };
-layout(set = 1, binding = 2, std430) buffer DrawnBlocks {
-    uint quartet_count;
-    uint drawn_quartets[];
-};
+layout(set = 1, binding = 1, std430) buffer Draws { Draw draws[]; };
+// Quartets of small blocks from the start on, of large ones from the end backwards.
+layout(set = 1, binding = 2, std430) writeonly buffer DrawnBlocks { uint drawn_quartets[]; };
 layout(set = 1, binding = 3, std430) buffer CounterBlock { Counters counters; };
 layout(set = 1, binding = 4, std430) readonly buffer SeenBlocks { uint seen_blocks[]; };
 // What an occlusion test has left: the depth pyramid (UNSEEN), or a bit a block (TESTED).
 layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
 layout(set = 1, binding = 5, std430) readonly buffer TestedBlocks { uint tested_blocks[]; };
+layout(push_constant) uniform Push {
+    uint first_draw;         // of the list of small blocks; that of large ones follows
+    uint draws_of_list;
+    uint workgroups;         // that draw a block
+};
 
-shared uint drawn_mask, quartets;  // of a group: its drawn blocks, and quartets that hold any
-shared uint first_entry;
+shared uint drawn_masks[CULL_GROUPS], large_masks[CULL_GROUPS];
+shared uint quartets[2], first_entry[2];  // small, large
 
 #include "shaders/hidden.glsl"
 
-// `seen`: in the last frame, or by the raster proxies.
-bool is_selected(uvec3 block, bool seen) {
-    if (SELECT == ALL) return true;
-    if (SELECT == TESTED) return seen;
-    if (seen != (SELECT == SEEN)) return false;
+// True if an eye may see the block. `seen`: in the last frame, or by the raster proxies.
+bool is_selected(uvec3 block, bool seen, out bool large) {
+    large = false;
+    if (SELECT == TESTED ? !seen : SELECT != ALL && seen != (SELECT == SEEN)) return false;
     const vec3 low = vec3(block * BLOCK);
     const vec3 high = min(low + float(BLOCK), vec3(grid.voxels.xyz) - 1.0);
-    for (uint eye = 0; eye < frame.counts.x; ++eye)
-        if (in_frustum(eye, low, high) && (SELECT == SEEN || !is_hidden(eye, low, high)))
-            return true;
-    return false;
+    bool selected = false;
+    for (uint eye = 0; eye < frame.counts.x; ++eye) {
+        if ((SELECT == SEEN || SELECT == UNSEEN) && !in_frustum(eye, low, high)) continue;
+        Extent extent;
+        const bool whole = project(eye, low, high, extent);
+        if (SELECT == UNSEEN && whole && is_hidden(eye, extent)) continue;
+        selected = true;
+        large = large || !whole ||
+                any(greaterThan(extent.greatest - extent.least, vec2(SMALL_SIDE))) ||
+                any(greaterThan(abs(extent.least), vec2(GUARD)));
+    }
+    return selected;
 }
 
-// Puts an entry into the list, and into the arguments of its draw.
-void list(uint i, uint entry, bool is_last) {
-    drawn_quartets[i] = entry;
-    const uint draw = i / DRAW_QUARTETS, place = i % DRAW_QUARTETS;
-    if (place % DRAW_ROW == 0) atomicAdd(draws[draw].y, 1);
-    if (place == DRAW_ROW - 1 || (is_last && place < DRAW_ROW))
-        atomicMax(draws[draw].x, place + 1);
+// Puts an entry into a list, and into the arguments of its draw.
+void list(uint size, uint i, uint entry) {
+    drawn_quartets[size == 0 ? i : drawn_quartets.length() - 1 - i] = entry;
+    const uint draw = first_draw + size * draws_of_list + i / DRAW_QUARTETS;
+    const uint place = i % DRAW_QUARTETS;
+    if (place % DRAW_ROW == 0) atomicMax(draws[draw].y, place / DRAW_ROW + 1);
+    if (place == 0) draws[draw].z = 4 * workgroups;
+}
+
+// Widens draws of a list that has become `quartets` long: the first row of each is full, or ends
+// with the list.
+void widen(uint size, uint before, uint count) {
+    for (uint i = before / DRAW_QUARTETS; i * DRAW_QUARTETS < before + count; ++i)
+        atomicMax(draws[first_draw + size * draws_of_list + i].x,
+                  min(before + count - i * DRAW_QUARTETS, DRAW_ROW));
 }
 
 void main() {
-    const uint place = gl_LocalInvocationIndex;
-    for (uint i = gl_WorkGroupID.x; i < group_count; i += gl_NumWorkGroups.x) {
-        const uint group = active_groups[i].x;
-        if (place == 0) drawn_mask = quartets = 0;
+    const uint thread = gl_LocalInvocationIndex;
+    const uint lane = thread / GROUP_BLOCKS, place = thread % GROUP_BLOCKS;
+    for (uint first = CULL_GROUPS * gl_WorkGroupID.x; first < group_count;
+         first += CULL_GROUPS * gl_NumWorkGroups.x) {
+        if (thread < CULL_GROUPS) drawn_masks[thread] = large_masks[thread] = 0;
+        if (thread < 2) quartets[thread] = 0;
         barrier();
-        const bool is_active = (active_groups[i].y >> place & 1) != 0;
-        const uint marks = SELECT == TESTED ? tested_blocks[group] : seen_blocks[group];
-        const bool seen = (marks >> place & 1) != 0;
-        const uvec3 block = group_origin(group) + block_in_group(place);
-        if (is_active && is_selected(block, seen)) atomicOr(drawn_mask, 1u << place);
+        if (first + lane < group_count) {
+            const uvec2 group = active_groups[first + lane];
+            const uint marks = SELECT == ALL      ? 0
+                               : SELECT == TESTED ? tested_blocks[group.x]
+                                                  : seen_blocks[group.x];
+            bool large;
+            if ((group.y >> place & 1) != 0 &&
+                is_selected(group_origin(group.x) + block_in_group(place),
+                            (marks >> place & 1) != 0, large)) {
+                atomicOr(drawn_masks[lane], 1u << place);
+                if (TWO_SIZES && large) atomicOr(large_masks[lane], 1u << place);
+            }
+        }
         barrier();
-        const uint mask = place < QUARTETS ? quartet_mask(drawn_mask, place) : 0;
-        if (mask != 0) atomicOr(quartets, 1u << place);
+        // The first threads: a quartet each. It is large if one of its blocks is.
+        uint mask = 0, size = 0, number = 0;
+        const uint of_group = thread / QUARTETS, quartet = thread % QUARTETS;
+        if (thread < CULL_GROUPS * QUARTETS) {
+            mask = quartet_mask(drawn_masks[of_group], quartet);
+            size = quartet_mask(large_masks[of_group], quartet) != 0 ? 1 : 0;
+            if (mask != 0) number = atomicAdd(quartets[size], 1);
+        }
         barrier();
-        if (place == 0 && quartets != 0) {
-            first_entry = atomicAdd(quartet_count, bitCount(quartets));
-            atomicAdd(counters.blocks_drawn, bitCount(drawn_mask));
+        if (thread < 2 && quartets[thread] != 0) {
+            const uint count = quartets[thread];
+            first_entry[thread] =
+                atomicAdd(draws[first_draw + thread * draws_of_list].quartets, count);
+            widen(thread, first_entry[thread], count);
+        }
+        if (thread == 0) {
+            uint blocks = 0;
+            for (uint i = 0; i < CULL_GROUPS; ++i) blocks += bitCount(drawn_masks[i]);
+            if (blocks != 0) atomicAdd(counters.blocks_drawn, blocks);
         }
         barrier();
         if (mask != 0)
-            list(first_entry + bitCount(quartets & ((1u << place) - 1)),
-                 (QUARTETS * group + place) << 4 | mask, quartets >> place == 1);
+            list(size, first_entry[size] + number,
+                 (QUARTETS * active_groups[first + of_group].x + quartet) << 4 | mask);
         barrier();
     }
 }

@@ -34,19 +34,20 @@ glm::dvec3 to_vec(const std::array<double, 3>& v) {
 
 }  // namespace
 
-Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups)
-    : grid_(grid), occlusion_(std::move(occlusion)) {
+Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups,
+                 bool two_sizes)
+    : grid_(grid),
+      workgroups_(workgroups),
+      sizes_(two_sizes ? 2 : 1),
+      occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
     const uint64_t quartets = uint64_t{shared::QUARTETS} * groups;
     draw_count_ = uint32_t((quartets + shared::DRAW_QUARTETS - 1) / shared::DRAW_QUARTETS);
-    drawn_blocks_ =
-        gpu::Buffer(device, 4 + 4 * quartets, Memory::device, "the list of drawn blocks");
-    const uint64_t draw_bytes = draw_count_ * sizeof(VkDispatchIndirectCommand);
-    draws_ = gpu::Buffer(device, draw_bytes, Memory::device, "draw arguments");
-    empty_draws_ = gpu::Buffer(device, draw_bytes, Memory::host, "draw arguments");
-    for (uint32_t i = 0; i < draw_count_; ++i)
-        empty_draws_.data<VkDispatchIndirectCommand>()[i] = {0, 0, 4 * workgroups};
+    drawn_blocks_ = gpu::Buffer(device, 4 * quartets, Memory::device, "the list of drawn blocks");
+    // Of each surface, for seen and for unseen blocks.
+    const uint64_t draws = uint64_t{2} * shared::MAX_SURFACES * sizes_ * draw_count_;
+    draws_ = gpu::Buffer(device, sizeof(shared::Draw) * draws, Memory::device, "draw arguments");
     counters_ = gpu::Buffer(device, sizeof(shared::Counters), Memory::device, "counters");
     for (gpu::Buffer& visible : visible_)
         visible = gpu::Buffer(device, uint64_t{4} * groups, Memory::device, "visible blocks");
@@ -61,7 +62,7 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     const std::vector lists(6, Kind::buffer);
     const uint32_t unseen = occlusion_->kind() == Occlusion::hiz ? 2 : 3;  // UNSEEN, TESTED
     for (uint32_t which = 0; which < select_.size(); ++which)
-        select_[which] = make("cull", lists, 0, {which < 2 ? which : unseen}, cull_comp);
+        select_[which] = make("cull", lists, 12, {which < 2 ? which : unseen, two_sizes}, cull_comp);
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     if (grid.info().blocks.w >= WORTH_GUESSING)
         find_first_visible_ =
@@ -70,7 +71,7 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
 }
 
 uint64_t Culling::gpu_bytes() const {
-    uint64_t bytes = occlusion_->gpu_bytes() + drawn_blocks_.bytes() + 2 * draws_.bytes() +
+    uint64_t bytes = occlusion_->gpu_bytes() + drawn_blocks_.bytes() + draws_.bytes() +
                      counters_.bytes() + 2 * visible_[0].bytes();
     for (const auto& list : active_groups_)
         bytes += list.bytes();
@@ -117,8 +118,9 @@ bool Culling::is_cut(const Camera& camera) const {
 
 void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target) {
     commands.update(counters_, offsetof(shared::Counters, blocks_drawn), &ZERO, sizeof(ZERO));
-    target.visible_blocks = frame.culling ? &visible_[seen_] : nullptr;
-    if (!frame.culling) return;
+    commands.fill(draws_, 0);
+    target.visible_blocks = nullptr;
+    if (!frame.culling) return commands.barrier();
     // What was marked last is seen now; the other set is cleared and marked next.
     seen_ = 1 - seen_;
     target.visible_blocks = &visible_[1 - seen_];
@@ -140,12 +142,14 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
 }
 
 void Culling::select(Commands& commands, uint32_t surface, Select which) {
-    commands.copy(empty_draws_, 0, draws_, 0, draws_.bytes());
-    commands.update(drawn_blocks_, 0, &ZERO, sizeof(ZERO));
-    commands.barrier();
+    struct Push {
+        uint32_t first_draw, draws_of_list, workgroups;
+    };
+    first_draw_ = (2 * surface + (which == Select::unseen ? 1 : 0)) * sizes_ * draw_count_;
     commands.bind(select_[size_t(which)],
                   {active_groups_[surface], draws_, drawn_blocks_, counters_, visible_[seen_],
                    which == Select::unseen ? gpu::Binding(occlusion_->result()) : counters_});
+    commands.push(Push{first_draw_, draw_count_, workgroups_});
     commands.dispatch_indirect(active_groups_[surface], 0);
     commands.barrier();
 }

@@ -15,8 +15,9 @@ namespace isorast {
 
 class Culling {
 public:
-    // `workgroups`: how many draw a block.
-    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups);
+    // `workgroups`: how many draw a block. `two_sizes`: whether large blocks get their own list.
+    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups,
+            bool two_sizes);
 
     // The active groups of each surface: once an isovalue.
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
@@ -31,15 +32,17 @@ public:
     void test(gpu::Commands& commands, uint32_t surface, const Target& target) {
         occlusion_->test(commands, active_groups_[surface], visible_[seen_], target);
     }
-    // Lists a surface's blocks in drawn_blocks() and counts them in draws().
+    // Lists a surface's blocks: those that are small in the picture, and those that are large.
+    enum class Size : uint32_t { small, large };
     void select(gpu::Commands& commands, uint32_t surface, Select which);
     Occlusion occlusion() const { return occlusion_->kind(); }
 
-    // Quartets of blocks (list.glsl), their count before them; and as many indirect dispatches or
-    // mesh draws as draw_count() for them, one after the other.
+    // What the last select() has listed: quartets of blocks (drawn.glsl), and draw_count() indirect
+    // dispatches or mesh draws for each size, one after the other from first_draw() on in draws().
     const gpu::Buffer& drawn_blocks() const { return drawn_blocks_; }
     const gpu::Buffer& draws() const { return draws_; }
     uint32_t draw_count() const { return draw_count_; }
+    uint32_t first_draw(Size size) const { return first_draw_ + uint32_t(size) * draw_count_; }
     const gpu::Buffer& counters() const { return counters_; }
     uint64_t gpu_bytes() const;
 
@@ -48,12 +51,12 @@ private:
     bool is_cut(const Camera& camera) const;
 
     const Grid& grid_;
-    uint32_t draw_count_ = 0;
+    uint32_t workgroups_, sizes_, draw_count_ = 0, first_draw_ = 0;
     std::unique_ptr<OcclusionTest> occlusion_;
     gpu::Pipeline find_active_, find_first_visible_;
     std::array<gpu::Pipeline, 3> select_;     // one for each Select
     std::vector<gpu::Buffer> active_groups_;  // one for each surface
-    gpu::Buffer drawn_blocks_, draws_, empty_draws_, counters_;
+    gpu::Buffer drawn_blocks_, draws_, counters_;
     std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
     uint32_t seen_ = 0;                   // which of the two is last frame's
     std::optional<Camera> last_camera_;   // of the frame that marked visible blocks

@@ -7,7 +7,6 @@
 
 #include <array>
 
-#include "shaders/marching_cubes.h"
 #include "techniques/direct/culling.h"
 #include "techniques/direct/rasterizer.h"
 #include "techniques/technique.h"
@@ -17,15 +16,6 @@ namespace isorast {
 namespace {
 
 using gpu::Commands;
-
-gpu::Buffer upload_cases(const gpu::Device& device) {
-    const CaseTable table = marching_cubes_table();
-    gpu::Buffer cases(device, sizeof(table.packed), gpu::Buffer::Memory::device, "marching cubes");
-    gpu::run_once(device, [&](Commands& commands) {
-        commands.update(cases, 0, table.packed.data(), sizeof(table.packed));
-    });
-    return cases;
-}
 
 class Direct final : public Technique {
 public:
@@ -38,7 +28,7 @@ public:
         culling_.find_active(commands, isovalues);
     }
     void record(Commands& commands, const Frame& frame, Target& target) override;
-    uint64_t gpu_bytes() const override { return cases_.bytes() + culling_.gpu_bytes(); }
+    uint64_t gpu_bytes() const override { return rasterizer_->gpu_bytes() + culling_.gpu_bytes(); }
     const gpu::Buffer* counters() const override { return &culling_.counters(); }
 
 private:
@@ -47,7 +37,6 @@ private:
     void draw(Commands& commands, const Frame& frame, const Target& target, Culling::Select which);
 
     Rasterizer kind_;
-    gpu::Buffer cases_;  // marching cubes: 256 x uvec2
     std::unique_ptr<BlockRasterizer> rasterizer_;
     Culling culling_;
 };
@@ -62,11 +51,11 @@ std::unique_ptr<OcclusionTest> make_occlusion_test(const TechniqueContext& conte
 
 Direct::Direct(const TechniqueContext& context)
     : kind_(context.options.rasterizer),
-      cases_(upload_cases(context.grid.device())),
-      rasterizer_(kind_ == Rasterizer::compute ? make_compute_rasterizer(context.grid, cases_)
-                                               : make_hardware_rasterizer(context.grid, cases_)),
+      rasterizer_(kind_ == Rasterizer::compute ? make_compute_rasterizer(context.grid)
+                                               : make_hardware_rasterizer(context.grid)),
       // A workgroup for each block; the paper's task shader takes half a block.
-      culling_(context.grid, make_occlusion_test(context), kind_ == Rasterizer::compute ? 1 : 2) {
+      culling_(context.grid, make_occlusion_test(context), kind_ == Rasterizer::compute ? 1 : 2,
+               /* two_sizes= */ kind_ == Rasterizer::compute) {
     if (context.options.exact) throw Error("direct: has no exact way; use --technique raymarch");
 }
 

@@ -1,12 +1,20 @@
-// What a workgroup of a draw is to extract. Workgroups along x and y: a quartet; along z: the n-th of
-// its drawn blocks.
-layout(set = 1, binding = 0, std430) readonly buffer DrawnBlocks {
-    uint quartet_count;
-    uint drawn_quartets[];
+// The list of drawn blocks, and what a workgroup of a draw is to extract. Workgroups along x and y: a
+// quartet; along z: the n-th of its drawn blocks. Blocks that are large in the picture are listed
+// from the list's end backwards: define LARGE to draw those.
+
+layout(set = 1, binding = 0, std430) readonly buffer Draws { Draw draws[]; };
+layout(set = 1, binding = 1, std430) readonly buffer DrawnBlocks { uint drawn_quartets[]; };
+layout(push_constant) uniform Push {
+    uint draw;  // counted from the list's first
+    uint surface;
+    uint first_draw;
 };
-layout(push_constant) uniform Push { uint draw, surface; };
 
 bool my_block(uint n, out uvec3 block) {
-    const uint i = draw * DRAW_QUARTETS + gl_WorkGroupID.x + DRAW_ROW * gl_WorkGroupID.y;
-    return i < quartet_count && drawn_block(drawn_quartets[i], n, block);
+    uint i = draw * DRAW_QUARTETS + gl_WorkGroupID.x + DRAW_ROW * gl_WorkGroupID.y;
+    if (i >= draws[first_draw].quartets) return false;
+#ifdef LARGE
+    i = drawn_quartets.length() - 1 - i;
+#endif
+    return drawn_block(drawn_quartets[i], n, block);
 }

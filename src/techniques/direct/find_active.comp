@@ -32,7 +32,7 @@ void main() {
     if (place != 0 || masks[local_group] == 0) return;
     const uint slot = atomicAdd(group_count, 1);
     active_groups[slot] = uvec2(group, masks[local_group]);
-    if (slot < MAX_LIST_GROUPS) atomicAdd(cull_x, 1);
+    if (slot % CULL_GROUPS == 0 && slot / CULL_GROUPS < MAX_LIST_GROUPS) atomicAdd(cull_x, 1);
     if (slot % TASK_GROUPS == 0) {
         const uint task = slot / TASK_GROUPS;
         if (task < TASK_ROW) atomicAdd(task_x, 1);

@@ -1,6 +1,6 @@
 // Half of a block, 8x8x4 cells (the paper's block, section 3.2), as rows of bits. Its 9x9x5 corners
 // are 45 corner rows of 9 along x; its cells are 32 cell rows of 8.
-#include "shaders/cell_rows.glsl"
+#include "shaders/cases.glsl"
 
 const uint CORNER_ROWS = 45, CELL_ROWS = 32, SIGN_WORDS = 15;
 

@@ -16,6 +16,7 @@
 #include "forward_frag.h"
 #include "forward_stereo_frag.h"
 #include "gpu/device.h"
+#include "shaders/marching_cubes.h"
 #include "surface_number_frag.h"
 #include "surface_number_stereo_frag.h"
 #include "techniques/direct/rasterizer.h"
@@ -27,9 +28,18 @@ namespace {
 using gpu::Commands;
 using gpu::Kind;
 
-struct DrawPush {
-    uint32_t draw, surface;
+struct Push {
+    uint32_t draw, surface, first_draw;
 };
+
+gpu::Buffer upload_cases(const gpu::Device& device) {
+    const CaseTable table = marching_cubes_table();
+    gpu::Buffer cases(device, sizeof(table.packed), gpu::Buffer::Memory::device, "marching cubes");
+    gpu::run_once(device, [&](Commands& commands) {
+        commands.update(cases, 0, table.packed.data(), sizeof(table.packed));
+    });
+    return cases;
+}
 
 // What a picture is drawn into beside depth.
 enum class Colors : uint8_t { none, numbers, shaded };
@@ -58,22 +68,23 @@ std::vector<VkFormat> color_formats(Colors colors) {
 
 class HardwareRasterizer final : public BlockRasterizer {
 public:
-    HardwareRasterizer(const Grid& grid, const gpu::Buffer& cases);
+    explicit HardwareRasterizer(const Grid& grid);
 
     void clear(Commands& commands, const Frame& frame, const Target& target) const override;
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override;
+    uint64_t gpu_bytes() const override { return cases_.bytes(); }
 
 private:
     const gpu::Pipeline& pipeline(const Frame& frame);
 
     const Grid& grid_;
-    const gpu::Buffer& cases_;
+    gpu::Buffer cases_;  // marching cubes: 256 x uvec2
     std::array<gpu::Pipeline, 12> pipelines_;  // made when first needed
 };
 
-HardwareRasterizer::HardwareRasterizer(const Grid& grid, const gpu::Buffer& cases)
-    : grid_(grid), cases_(cases) {
+HardwareRasterizer::HardwareRasterizer(const Grid& grid)
+    : grid_(grid), cases_(upload_cases(grid.device())) {
     const gpu::Device& device = grid_.device();
     if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
         throw Error(fmt::format(
@@ -105,8 +116,8 @@ const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
     if (colors != Colors::none || clipped)
         shaders.push_back(
             {VK_SHADER_STAGE_FRAGMENT_BIT, (stereo ? stereo_fragment : fragment)[size_t(colors)]});
-    const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer},
-                                          sizeof(DrawPush), {clipped});
+    const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer, Kind::buffer},
+                                          sizeof(Push), {clipped});
     pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders,
                                        {color_formats(colors), VK_FORMAT_D32_SFLOAT});
     return pipeline;
@@ -118,17 +129,16 @@ void HardwareRasterizer::clear(Commands& commands, const Frame& frame, const Tar
     if (frame.shading == Shading::forward) color = {{b.r, b.g, b.b, b.a}};
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ true, color);
     commands.end_rendering();
-    commands.barrier();
 }
 
 void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uint32_t surface,
                                  const Frame& frame, const Target& target) {
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
-    commands.bind(pipeline(frame), {culling.drawn_blocks(), cases_});
+    commands.bind(pipeline(frame), {culling.draws(), culling.drawn_blocks(), cases_});
+    const uint32_t first = culling.first_draw(Culling::Size::small);  // here, all are
     for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
-        commands.push(DrawPush{draw, surface});
-        commands.draw_mesh_tasks_indirect(culling.draws(),
-                                          draw * sizeof(VkDrawMeshTasksIndirectCommandEXT));
+        commands.push(Push{draw, surface, first});
+        commands.draw_mesh_tasks_indirect(culling.draws(), (first + draw) * sizeof(shared::Draw));
     }
     commands.end_rendering();
     commands.barrier();
@@ -136,9 +146,8 @@ void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uin
 
 }  // namespace
 
-std::unique_ptr<BlockRasterizer> make_hardware_rasterizer(const Grid& grid,
-                                                          const gpu::Buffer& cases) {
-    return std::make_unique<HardwareRasterizer>(grid, cases);
+std::unique_ptr<BlockRasterizer> make_hardware_rasterizer(const Grid& grid) {
+    return std::make_unique<HardwareRasterizer>(grid);
 }
 
 }  // namespace isorast

@@ -12,18 +12,19 @@ namespace isorast {
 class BlockRasterizer {
 public:
     virtual ~BlockRasterizer() = default;
-    // Depth 0, and the background where the rasterizer colours. Ends with a barrier.
+    // Depth 0, and the background where the rasterizer colours; done at the next barrier.
     virtual void clear(gpu::Commands& commands, const Frame& frame, const Target& target) const = 0;
     // The blocks of one surface that `culling` has listed. Ends with a barrier.
     virtual void extract(gpu::Commands& commands, const Culling& culling, uint32_t surface,
                          const Frame& frame, const Target& target) = 0;
+    virtual uint64_t gpu_bytes() const = 0;
 };
 
-// `cases`: the table of marching cubes, 256 x uvec2. The first throws Error where the device
-// cannot.
-std::unique_ptr<BlockRasterizer> make_hardware_rasterizer(const Grid& grid,
-                                                          const gpu::Buffer& cases);
-std::unique_ptr<BlockRasterizer> make_compute_rasterizer(const Grid& grid,
-                                                         const gpu::Buffer& cases);
+// The first throws Error where the device cannot.
+std::unique_ptr<BlockRasterizer> make_hardware_rasterizer(const Grid& grid);
+std::unique_ptr<BlockRasterizer> make_compute_rasterizer(const Grid& grid);
+
+// What rasterize.comp reads as TriangleTable.
+gpu::Buffer upload_triangle_table(const gpu::Device& device);
 
 }  // namespace isorast
