@@ -157,6 +157,11 @@ DeviceInfo describe(VkPhysicalDevice physical) {
     vkGetPhysicalDeviceProperties2(physical, &all);
     info.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
     info.subgroup_size = subgroup.subgroupSize;
+    const VkSubgroupFeatureFlags sums = VK_SUBGROUP_FEATURE_BASIC_BIT |
+                                        VK_SUBGROUP_FEATURE_BALLOT_BIT |
+                                        VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
+    info.subgroup_sums = (subgroup.supportedOperations & sums) == sums &&
+                         (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT);
     info.max_allocation_bytes = limits.maxMemoryAllocationSize;
     VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(physical, &memory);

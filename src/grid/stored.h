@@ -27,8 +27,9 @@ struct Stored {
 // above their least value, so that small differences survive; f32 stays.
 Stored stored_as(const Volume& volume);
 
-// Voxels that are not finite are stored as this, below every isovalue: outside.
-inline constexpr float NOT_FINITE = std::numeric_limits<float>::lowest();
+// Voxels that are not finite are stored as this, below every isovalue: outside. Not the lowest
+// float: the reciprocal of a difference from it must not be so small that GPUs flush it to 0.
+inline constexpr float NOT_FINITE = -0x1p124f;
 
 // Least and greatest of the finite stored values seen so far.
 struct StoredRange {

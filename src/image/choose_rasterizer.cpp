@@ -164,7 +164,9 @@ std::string key_of(const Gpu& gpu, bool hardware) {
     const DeviceInfo& info = gpu.info();
     return fmt::format("isorast {}, {}, {}, Vulkan {}, subgroup {}, {}", ISORAST_VERSION, info.name,
                        info.driver, info.api_version, info.subgroup_size,
-                       hardware ? "mesh shaders" : "no mesh shaders");
+                       !hardware                                  ? "no mesh shaders"
+                       : gpu.device().features().fragment_stores ? "mesh shaders"
+                                                                  : "mesh shaders, no raster proxies");
 }
 
 // Empty: nowhere.

@@ -15,7 +15,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 1) const bool WRITE_COLOR = true;     // and refine the hit
 layout(constant_id = 2) const bool WRITE_DISTANCE = false;
 layout(constant_id = 3) const bool MARK_VISIBLE = false;   // for the next frame's culling
-layout(constant_id = 4) const bool FILTERED = false;       // gradients through the texture unit
+layout(constant_id = 4) const bool FILTERED = false;       // sample through the texture unit
 
 layout(set = 1, binding = 0) uniform texture2DArray depth;
 layout(set = 1, binding = 1) uniform utexture2DArray surface_numbers;
@@ -76,6 +76,35 @@ Hit refine_hit(Ray ray, float t, float iso) {
     return best;
 }
 
+// The same through the sampler: false position between points half a voxel, or else one voxel,
+// before and behind t.
+Hit refine_hit_filtered(Ray ray, float t, float iso) {
+    const float voxel_step = 1.0 / length(ray.direction);
+    const vec3 last = vec3(grid.voxels.xyz) - 1.0;
+    const Brick brick = brick_of(cell_of(ray.origin + t * ray.direction));
+    float a = t, b = t, value_a = 0.0, value_b = 0.0;
+    for (int i = 1; i <= 2 && (value_a < 0.0) == (value_b < 0.0); ++i) {
+        a = t - 0.5 * float(i) * voxel_step;
+        b = t + 0.5 * float(i) * voxel_step;
+        value_a = sample_filtered(brick, clamp(ray.origin + a * ray.direction, vec3(0.0), last)) - iso;
+        value_b = sample_filtered(brick, clamp(ray.origin + b * ray.direction, vec3(0.0), last)) - iso;
+    }
+    Hit hit = Hit(t, value_b > value_a, (value_a < 0.0) != (value_b < 0.0));
+    if (!hit.refined) return hit;
+    for (int i = 0; i < 3; ++i) {
+        hit.t = (a * value_b - b * value_a) / (value_b - value_a);
+        const float value = sample_filtered(brick, ray.origin + hit.t * ray.direction) - iso;
+        if ((value < 0.0) == (value_a < 0.0)) {
+            a = hit.t;
+            value_a = value;
+        } else {
+            b = hit.t;
+            value_b = value;
+        }
+    }
+    return hit;
+}
+
 // A colour for each block, well apart from its neighbours'.
 vec3 block_color(ivec3 block) {
     const uvec3 mixed = uvec3(block) * uvec3(0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du);
@@ -93,7 +122,7 @@ vec4 shade(Ray ray, Hit hit, vec3 surface_color) {
         return vec4(vec3(mix(0.95, 0.05, clamp((hit.t - near) / (far - near), 0.0, 1.0))), 1.0);
     }
     const vec3 gradient =
-        FILTERED && VOXEL_BITS < 32 ? field_gradient_filtered(p) : field_gradient(p);
+        FILTERED ? field_gradient_filtered(p) : field_gradient(p);
     const bool outward = hit.refined ? hit.entering : dot(gradient, ray.direction) > 0.0;
     const vec3 normal = world_normal(gradient, ray.direction, outward);
     if (frame.size.w == NORMALS) return vec4(0.5 + 0.5 * normal, 1.0);
@@ -112,7 +141,8 @@ void shade_pixel(ivec3 pixel, float z) {
         if (MARK_VISIBLE) mark_visible(cell_of(ray.origin + t * ray.direction));
         if (WRITE_COLOR) {
             const uint number = frame.size.z > 1 ? texelFetch(surface_numbers, pixel, 0).r : 0;
-            const Hit hit = refine_hit(ray, t, frame.surfaces[number].w);
+            const float iso = frame.surfaces[number].w;
+            const Hit hit = FILTERED ? refine_hit_filtered(ray, t, iso) : refine_hit(ray, t, iso);
             t = hit.t;
             result = shade(ray, hit, frame.surfaces[number].rgb);
         }

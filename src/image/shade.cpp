@@ -13,11 +13,12 @@ Shade::Shade(const Grid& grid)
 const gpu::Pipeline& Shade::pipeline(bool color, bool distance, bool mark) {
     gpu::Pipeline& pipeline = pipelines_[color + 2 * distance + 4 * mark];
     if (!pipeline) {
+        const bool filtered = grid_.can_filter() && grid_.stored().bits == 8;
         using gpu::Kind;
         const std::vector bindings{Kind::texture, Kind::texture, Kind::image, Kind::image,
                                    Kind::buffer};
         pipeline = gpu::Pipeline::compute(
-            grid_.device(), grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, grid_.can_filter()}),
+            grid_.device(), grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, filtered}),
             grid_.pick(shade_comp, shade_comp_bricked));
     }
     return pipeline;

@@ -29,10 +29,12 @@ void main() {
     float pixels[16];
     [[unroll]] for (uint i = 0; i < 16; ++i) pixels[i] = depth_at(corner + uvec2(i & 3, i >> 2));
     float least = 1.0;
-    [[unroll]] for (uint i = 0; i < 16; i += i == 2 ? 6 : 2) {
-        const float value =
-            min(min(pixels[i], pixels[i + 1]), min(pixels[i + 4], pixels[i + 5]));
-        store(1, (corner + uvec2(i & 3, i >> 2)) / 2, value);
+    [[unroll]] for (uint i = 0; i < 4; ++i) {
+        const uvec2 square = 2 * uvec2(i & 1, i >> 1);
+        const uint first = square.x + 4 * square.y;
+        const float value = min(min(pixels[first], pixels[first + 1]),
+                                min(pixels[first + 4], pixels[first + 5]));
+        store(1, (corner + square) / 2, value);
         least = min(least, value);
     }
     store(2, gl_GlobalInvocationID.xy, least);

@@ -11,6 +11,8 @@
 #include "rasterize_large.h"
 #include "rasterize_large_numbered.h"
 #include "rasterize_numbered.h"
+#include "rasterize_subgroups.h"
+#include "rasterize_subgroups_numbered.h"
 #include "shaders/marching_cubes.h"
 #include "techniques/direct/rasterizer.h"
 
@@ -64,20 +66,25 @@ private:
         const bool large = size == Size::large;
         gpu::Pipeline& pipeline = pipelines_[size_t(numbered) + 2 * clipped + 4 * large];
         if (pipeline) return pipeline;
-        using Code = std::span<const uint32_t>;
-        const Code one = grid_.pick(rasterize_comp, rasterize_comp_bricked);
-        const Code one_large = grid_.pick(rasterize_large, rasterize_large_bricked);
-        const Code several = grid_.pick(rasterize_numbered, rasterize_numbered_bricked);
-        const Code several_large =
-            grid_.pick(rasterize_large_numbered, rasterize_large_numbered_bricked);
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
                                    Kind::image};
         const bool snapped = !grid_.device().is_cpu();
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
             grid_.pipeline_info("rasterize", bindings, sizeof(Push), {clipped, snapped}),
-            large ? (numbered ? several_large : one_large) : (numbered ? several : one));
+            code(numbered, large));
         return pipeline;
+    }
+    std::span<const uint32_t> code(bool numbered, bool large) const {
+        if (large && numbered)
+            return grid_.pick(rasterize_large_numbered, rasterize_large_numbered_bricked);
+        if (large) return grid_.pick(rasterize_large, rasterize_large_bricked);
+        const bool sums = grid_.device().info().subgroup_sums;
+        if (sums && numbered)
+            return grid_.pick(rasterize_subgroups_numbered, rasterize_subgroups_numbered_bricked);
+        if (sums) return grid_.pick(rasterize_subgroups, rasterize_subgroups_bricked);
+        if (numbered) return grid_.pick(rasterize_numbered, rasterize_numbered_bricked);
+        return grid_.pick(rasterize_comp, rasterize_comp_bricked);
     }
 
     const Grid& grid_;

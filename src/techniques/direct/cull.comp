@@ -30,6 +30,8 @@ layout(push_constant) uniform Push {
     uint workgroups;         // that draw a block
 };
 
+const uint LONG = 8192;  // quartets
+
 shared uint drawn_masks[CULL_GROUPS], large_masks[CULL_GROUPS];
 shared uint quartets[2], first_entry[2];  // small, large
 
@@ -61,7 +63,10 @@ void list(uint size, uint i, uint entry) {
     const uint draw = first_draw + size * draws_of_list + i / DRAW_QUARTETS;
     const uint place = i % DRAW_QUARTETS;
     if (place % DRAW_ROW == 0) atomicMax(draws[draw].y, place / DRAW_ROW + 1);
-    if (place == 0) draws[draw].z = 4 * workgroups;
+    // A workgroup for each block of a quartet, so that small volumes fill the device; in long lists
+    // one for all, as half of those would find nothing to do.
+    if (place == 0) atomicAdd(draws[draw].z, 4 * workgroups);
+    if (place == LONG && TWO_SIZES) atomicAdd(draws[draw].z, uint(-3));
 }
 
 // Widens draws of a list that has become `quartets` long: the first row of each is full, or ends

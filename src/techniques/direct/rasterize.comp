@@ -1,7 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#ifdef SUBGROUPS
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#endif
 // variant rasterize_numbered: -DNUMBERED
+// variant rasterize_subgroups: -DSUBGROUPS
+// variant rasterize_subgroups_numbered: -DSUBGROUPS -DNUMBERED
 // variant rasterize_counting: -DCOUNTING
 // variant rasterize_large: -DLARGE
 // variant rasterize_large_numbered: -DLARGE -DNUMBERED
@@ -16,7 +22,9 @@
 #include "techniques/direct/list.glsl"
 #include "techniques/direct/drawn.glsl"
 
-const uint THREADS = 128;
+#ifndef THREADS
+#define THREADS 128
+#endif
 layout(local_size_x = THREADS) in;
 
 // Marching cubes: of each case's five possible triangles, where the corners' vertices are
@@ -63,68 +71,77 @@ shared uvec2 rows[ROWS];  // crossed edges of corner rows, and the first one's n
 // First x: the vertices' edges, y: occupied cells. Then the vertices' pixels and depth, as bits.
 shared uint vertex_x[MAX_VERTICES], vertex_y[MAX_VERTICES], vertex_z[MAX_VERTICES];
 shared uint triangles[MAX_TRIANGLES];  // cell | place in triangle_table << 9
-shared uint vertex_total, cell_total, triangle_total;
+shared uint row_totals;                // vertices | cells << 16
+shared uint triangle_total;
 
-// All fetches are on their way before the first one's result is waited for.
-void load_values(uvec3 first) {
-    const uint ROUNDS = (CORNERS + THREADS - 1) / THREADS;
+// Takes `count` places in a list whose length is the shared `total`; `first` becomes the first one.
+// One atomic operation a subgroup where the device can count across it: threads wait for each other
+// at the same address.
+#ifdef SUBGROUPS
+#define RESERVE(total, count, first)                       \
+    first = subgroupAdd(count);                            \
+    if (subgroupElect()) first = atomicAdd(total, first);  \
+    first = subgroupBroadcastFirst(first) + subgroupExclusiveAdd(count);
+#else
+#define RESERVE(total, count, first) first = atomicAdd(total, count);
+#endif
+
+// A row of nine corners a thread: their values, all fetches on their way before the first one's
+// result is waited for, and their signs.
+void load_rows(uvec3 first, float iso) {
     const Brick brick = brick_of(ivec3(first));
-    float loaded[ROUNDS];
-    [[unroll]] for (uint round = 0; round < ROUNDS; ++round) {
-        const uint i = min(gl_LocalInvocationIndex + round * THREADS, CORNERS - 1);
-        loaded[round] =
-            voxel(brick, clamp_to_volume(ivec3(first + uvec3(i % 9, i / 9 % 9, i / 81))));
-    }
-    [[unroll]] for (uint round = 0; round < ROUNDS; ++round)
-        values[min(gl_LocalInvocationIndex + round * THREADS, CORNERS - 1)] = loaded[round];
-}
-
-void find_signs(float iso) {
+    const int last = int(grid.voxels.x) - 1 - int(first.x);
     for (uint row = gl_LocalInvocationIndex; row < ROWS; row += THREADS) {
+        const ivec3 start = clamp_to_volume(ivec3(first + uvec3(0, row % 9, row / 9)));
+        float loaded[9];
+        [[unroll]] for (int x = 0; x < 9; ++x)
+            loaded[x] = voxel(brick, start + ivec3(min(x, last), 0, 0));
         uint bits = 0;
-        for (uint x = 0; x < 9; ++x) bits |= (values[9 * row + x] >= iso ? 1u : 0u) << x;
+        [[unroll]] for (int x = 0; x < 9; ++x) {
+            values[9 * row + x] = loaded[x];
+            bits |= (loaded[x] >= iso ? 1u : 0u) << x;
+        }
         signs[row] = bits;
     }
 }
 
-// Lists the vertices on a corner row's edges, of the cell layers from `layer` on.
-void list_vertices(uint row, uint layer, uint layers, ivec3 left) {
-    const uint y = row % 9, z = row / 9;
-    const uint cells = left.x >= 8 ? 0xffu : (1u << max(left.x, 0)) - 1, corners = cells << 1 | 1;
-    uint mask = 0;
-    if (z >= layer && z <= layer + layers && int(y) <= left.y && int(z) <= left.z) {
-        mask = cells;
-        if (int(y) < min(left.y, 8)) mask |= corners << 8;
-        if (int(z) < min(left.z, int(layer + layers))) mask |= corners << 17;
-    }
-    const uint bits = edge_bits(signs[row], signs[min(row + 1, ROWS - 1)],
-                                signs[min(row + 9, ROWS - 1)]) & mask;
-    uint vertex = bits == 0 ? 0 : atomicAdd(vertex_total, bitCount(bits));
-    rows[row] = uvec2(bits, vertex);
-    for (uint rest = bits; rest != 0 && vertex < MAX_VERTICES; rest &= rest - 1)
-        vertex_x[vertex++] = row << 5 | findLSB(rest);
-}
-
-// Lists the occupied cells of a cell row: cell | case << 9.
-void list_cells(uint row, uint layer, uint layers, ivec3 left) {
-    const uint y = row & 7u, z = row >> 3;
-    if (z < layer || z >= layer + layers || int(y) >= left.y || int(z) >= left.z) return;
-    const CellRow corners = CellRow(signs[corner_row(y, z)], signs[corner_row(y + 1, z)],
-                                    signs[corner_row(y, z + 1)], signs[corner_row(y + 1, z + 1)]);
-    const uint exist = left.x >= 8 ? 0xffu : (1u << max(left.x, 0)) - 1;
-    uint occupied = occupied_cells(corners) & exist;
-    uint i = occupied == 0 ? 0 : atomicAdd(cell_total, bitCount(occupied));
-    for (; occupied != 0; occupied &= occupied - 1) {
-        const uint x = findLSB(occupied);
-        vertex_y[i++] = row << 3 | x | cell_case(corners, x) << 9;
+// Lists the vertices on the edges of corner rows, and the occupied cells of cell rows, as cell |
+// case << 9; of the cell layers from `layer` on.
+void list_rows(uint layer, uint layers, ivec3 left) {
+    const uint exist = left.x >= 8 ? 0xffu : (1u << max(left.x, 0)) - 1, corners = exist << 1 | 1;
+    for (uint row = gl_LocalInvocationIndex; row < ROWS; row += THREADS) {
+        const uint y = row % 9, z = row / 9;
+        const CellRow cells = CellRow(signs[row], signs[min(row + 1, ROWS - 1)],
+                                      signs[min(row + 9, ROWS - 1)], signs[min(row + 10, ROWS - 1)]);
+        uint mask = 0, occupied = 0;
+        if (z >= layer && z <= layer + layers && int(y) <= left.y && int(z) <= left.z) {
+            const bool has_y = int(y) < min(left.y, 8);
+            const bool has_z = int(z) < min(left.z, int(layer + layers));
+            mask = exist | (has_y ? corners << 8 : 0) | (has_z ? corners << 17 : 0);
+            if (has_y && has_z) occupied = occupied_cells(cells) & exist;
+        }
+        uint crossed = edge_bits(cells.a, cells.b, cells.c) & mask;
+        const uint counts = bitCount(crossed) | bitCount(occupied) << 16;
+        uint first;
+        RESERVE(row_totals, counts, first)
+        uint vertex = first & 0xffffu, i = first >> 16;
+        rows[row] = uvec2(crossed, vertex);
+        for (; crossed != 0 && vertex < MAX_VERTICES; crossed &= crossed - 1)
+            vertex_x[vertex++] = row << 5 | findLSB(crossed);
+        for (; occupied != 0; occupied &= occupied - 1) {
+            const uint x = findLSB(occupied);
+            vertex_y[i++] = z << 6 | y << 3 | x | cell_case(cells, x) << 9;
+        }
     }
 }
 
 void list_triangles() {
+    const uint cell_total = row_totals >> 16;
     for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
         const uint cell = vertex_y[i] & 511u, entry = 5 * (vertex_y[i] >> 9);
         const uint count = triangle_table[entry] >> 29;
-        const uint triangle = atomicAdd(triangle_total, count);
+        uint triangle;
+        RESERVE(triangle_total, count, triangle)
         for (uint number = 0; number < count && triangle + number < MAX_TRIANGLES; ++number)
             triangles[triangle + number] = cell | entry + number << 9;
     }
@@ -191,6 +208,7 @@ void rasterize(uint eye, uvec3 first, float iso) {
 }
 #else
 void project_vertices(uint eye, uvec3 first, float iso) {
+    const uint vertex_total = row_totals & 0xffffu;
     for (uint i = gl_LocalInvocationIndex; i < vertex_total; i += THREADS) {
         const vec3 screen = to_screen(project(eye, vertex_x[i], first, iso));
         vertex_x[i] = floatBitsToUint(screen.x);
@@ -217,34 +235,38 @@ void rasterize(uint eye, uvec3 first, float iso) {
 }
 #endif
 
-void main() {
-    const uint thread = gl_LocalInvocationIndex;
-    const float iso = frame.surfaces[surface].w;
-    uvec3 block;
-    if (!my_block(gl_WorkGroupID.z, block)) return;
-    const uvec3 first = block * BLOCK;
-    const ivec3 left = cells_left(first);
-    load_values(first);
-    barrier();
-    find_signs(iso);
+bool fits() {
+    return (row_totals & 0xffffu) <= MAX_VERTICES && triangle_total <= MAX_TRIANGLES;
+}
 
+void draw_block(uvec3 first, float iso) {
+    const ivec3 left = cells_left(first);
+    load_rows(first, iso);
     uint layer = 0, layers = BLOCK;
     while (layer < BLOCK) {
-        for (uint eye = 0; eye < frame.counts.x; ++eye) {
-            if (thread == 0) vertex_total = cell_total = triangle_total = 0;
+        bool drawn = true;
+        for (uint eye = 0; eye < frame.counts.x && drawn; ++eye) {
+            if (gl_LocalInvocationIndex == 0) row_totals = triangle_total = 0;
             barrier();
-            if (thread < ROWS) list_vertices(thread, layer, layers, left);
-            if (thread >= THREADS - 64) list_cells(thread - (THREADS - 64), layer, layers, left);
+            list_rows(layer, layers, left);
             barrier();
             list_triangles();
             barrier();
-            if (vertex_total > MAX_VERTICES || triangle_total > MAX_TRIANGLES) break;
-            rasterize(eye, first, iso);
+            drawn = fits();
+            if (drawn) rasterize(eye, first, iso);
             barrier();
         }
-        const bool too_many = vertex_total > MAX_VERTICES || triangle_total > MAX_TRIANGLES;
-        barrier();
-        if (too_many) layers = THIN;
-        else layer += layers;
+        if (drawn) layer += layers;
+        else layers = THIN;
+    }
+}
+
+// A workgroup draws one block of its quartet, or all.
+void main() {
+    const float iso = frame.surfaces[surface].w;
+    for (uint n = gl_WorkGroupID.z; n < 4; n += gl_NumWorkGroups.z) {
+        uvec3 block;
+        if (!my_block(n, block)) return;
+        draw_block(block * BLOCK, iso);
     }
 }
