@@ -12,7 +12,7 @@ using gpu::Kind;
 
 uint64_t pyramid_bytes(Size size, uint32_t eyes) {
     uint64_t squares = 0;
-    for (uint32_t level = 1; level <= 6; ++level) {
+    for (uint32_t level = 1; level <= 5; ++level) {
         const uint32_t side = 1u << level;
         squares += uint64_t{(size.width + side - 1) / side} * ((size.height + side - 1) / side);
     }
@@ -36,7 +36,7 @@ void DepthPyramid::fit(const Target& target) {
 void DepthPyramid::build(gpu::Commands& commands, const Target& target) {
     const auto pass = commands.pass("depth pyramid");
     commands.bind(build_, {target.depth, pyramid_});
-    commands.dispatch((target.size.width + 63) / 64, (target.size.height + 63) / 64, target.eyes);
+    commands.dispatch((target.size.width + 31) / 32, (target.size.height + 31) / 32, target.eyes);
     commands.barrier();
 }
 

@@ -20,19 +20,24 @@ struct Extent {
     float nearest;
 };
 
-// False if a part of the box lies before the near plane: then it can touch anything. Rounding must
-// not make the extent too small: it is a 64th of a pixel wider and 1e-5 nearer than the corners
-// (rasterizers round positions to a 256th).
+// A point. Rounding must not make the extent too small: it is a 64th of a pixel wider and 1e-5 nearer
+// (rasterizers round positions to a 256th). False before the near plane.
+bool project(uint eye, vec3 point, out Extent extent) {
+    const vec4 clip = frame.eyes[eye].clip_from_voxel * vec4(point, 1.0);
+    const vec2 pixel = (0.5 + 0.5 * clip.xy / clip.w) * vec2(frame.size.xy);
+    extent = Extent(pixel - 1.0 / 64.0, pixel + 1.0 / 64.0, clip.z / clip.w * 1.00001 + 1e-7);
+    return clip.w > 0.0 && clip.z < clip.w;
+}
+
+// False if a part of the box lies before the near plane: then it can touch anything.
 bool project(uint eye, vec3 low, vec3 high, out Extent extent) {
     extent = Extent(vec2(1e9), vec2(-1e9), 0.0);
     for (uint c = 0; c < 8; ++c) {
-        const vec3 corner = mix(low, high, vec3(c & 1, c >> 1 & 1, c >> 2));
-        const vec4 clip = frame.eyes[eye].clip_from_voxel * vec4(corner, 1.0);
-        if (clip.w <= 0.0 || clip.z >= clip.w) return false;
-        const vec2 pixel = (0.5 + 0.5 * clip.xy / clip.w) * vec2(frame.size.xy);
-        extent.least = min(extent.least, pixel - 1.0 / 64.0);
-        extent.greatest = max(extent.greatest, pixel + 1.0 / 64.0);
-        extent.nearest = max(extent.nearest, clip.z / clip.w * 1.00001 + 1e-7);
+        Extent corner;
+        if (!project(eye, mix(low, high, vec3(c & 1, c >> 1 & 1, c >> 2)), corner)) return false;
+        extent.least = min(extent.least, corner.least);
+        extent.greatest = max(extent.greatest, corner.greatest);
+        extent.nearest = max(extent.nearest, corner.nearest);
     }
     return true;
 }

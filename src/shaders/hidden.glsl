@@ -1,21 +1,30 @@
 // The occlusion test by a depth pyramid. Needs pyramid[], and shaders/frustum.glsl.
 #include "shaders/pyramid.glsl"
 
-// True if depth already drawn is nearer than all of a box, at every pixel that the box can touch.
-bool is_hidden(uint eye, Extent extent) {
-    const vec2 last = vec2(frame.size.xy) - 1.0;
-    const uvec2 low_pixel = uvec2(clamp(floor(extent.least), vec2(0.0), last));
-    const uvec2 high_pixel = uvec2(clamp(floor(extent.greatest), vec2(0.0), last));
-    // The finest level at which the box covers at most 4x4 squares.
+// The squares of the pyramid that an extent touches: at the finest level at which they are at most
+// 4x4, or else at the coarsest.
+struct Squares {
+    uint level;
+    uvec2 first, end;  // both belong to it
+};
+
+Squares squares_of(uvec2 low_pixel, uvec2 high_pixel) {
     uint level = 1;
     while (level < PYRAMID_LEVELS &&
            any(greaterThan((high_pixel >> level) - (low_pixel >> level), uvec2(3)))) ++level;
-    const uvec2 first = low_pixel >> level, end = high_pixel >> level;
-    if (any(greaterThan(end - first, uvec2(15)))) return false;  // larger than a thousand pixels
-    const uint offset = pyramid_offset(eye, level), width = pyramid_size(level).x;
+    return Squares(level, low_pixel >> level, high_pixel >> level);
+}
+
+// True if depth already drawn is nearer than all of a box, at every pixel that the box can touch.
+bool is_hidden(uint eye, Extent extent) {
+    const vec2 last = vec2(frame.size.xy) - 1.0;
+    const Squares squares = squares_of(uvec2(clamp(floor(extent.least), vec2(0.0), last)),
+                                       uvec2(clamp(floor(extent.greatest), vec2(0.0), last)));
+    if (any(greaterThan(squares.end - squares.first, uvec2(15)))) return false;  // half a screen
+    const uint offset = pyramid_offset(eye, squares.level), width = pyramid_size(squares.level).x;
     float farthest = 1.0;
-    for (uint y = first.y; y <= end.y; ++y)
-        for (uint x = first.x; x <= end.x; ++x)
+    for (uint y = squares.first.y; y <= squares.end.y; ++y)
+        for (uint x = squares.first.x; x <= squares.end.x; ++x)
             farthest = min(farthest, pyramid[offset + x + width * y]);
     return farthest > extent.nearest;
 }

@@ -1,6 +1,6 @@
-// The depth pyramid: the farthest depth of squares of 2, 4, ... 64 pixels, levels 1 to 6 one after
+// The depth pyramid: the farthest depth of squares of 2, 4, ... 32 pixels, levels 1 to 5 one after
 // the other, first for the left eye.
-const uint PYRAMID_LEVELS = 6;
+const uint PYRAMID_LEVELS = 5;
 
 uvec2 pyramid_size(uint level) { return (frame.size.xy + (1u << level) - 1) >> level; }
 

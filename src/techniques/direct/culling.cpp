@@ -145,6 +145,8 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
     struct Push {
         uint32_t first_draw, draws_of_list, workgroups;
     };
+    const bool tested = which == Select::unseen && occlusion() == Occlusion::hiz;
+    pyramid_ = tested ? &occlusion_->result() : nullptr;
     first_draw_ = (2 * surface + (which == Select::unseen ? 1 : 0)) * sizes_ * draw_count_;
     commands.bind(select_[size_t(which)],
                   {active_groups_[surface], draws_, drawn_blocks_, counters_, visible_[seen_],

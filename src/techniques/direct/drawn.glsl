@@ -11,10 +11,13 @@ layout(push_constant) uniform Push {
 };
 
 bool my_block(uint n, out uvec3 block) {
-    uint i = draw * DRAW_QUARTETS + gl_WorkGroupID.x + DRAW_ROW * gl_WorkGroupID.y;
-    if (i >= draws[first_draw].quartets) return false;
+    const uint i = draw * DRAW_QUARTETS + gl_WorkGroupID.x + DRAW_ROW * gl_WorkGroupID.y;
+    // Both on their way before either is waited for.
+    const uint last = drawn_quartets.length() - 1, count = draws[first_draw].quartets;
 #ifdef LARGE
-    i = drawn_quartets.length() - 1 - i;
+    const uint entry = drawn_quartets[last - min(i, last)];
+#else
+    const uint entry = drawn_quartets[min(i, last)];
 #endif
-    return drawn_block(drawn_quartets[i], n, block);
+    return i < count && drawn_block(entry, n, block);
 }

@@ -33,10 +33,13 @@ layout(set = 1, binding = 2, std430) readonly buffer TriangleTable { uint triang
 // Depth as the bits of floats: of numbers that are not negative, the order is the same.
 layout(set = 1, binding = 3, r32ui) uniform uimage2DArray depth_bits;
 layout(set = 1, binding = 4, r32ui) writeonly uniform uimage2DArray surface_numbers;
+layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
 layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 // Whether depth is the plane through the vertices' positions on the grid of 1/256 pixels, as GPUs
 // have it, or through those before rounding, as lavapipe has it.
 layout(constant_id = 2) const bool SNAPPED = false;
+// Whether eighths of the block that depth already drawn hides, by the pyramid, are left out.
+layout(constant_id = 3) const bool OCCLUSION = false;
 
 #include "shaders/cell_rows.glsl"
 
@@ -68,7 +71,7 @@ const uint MAX_VERTICES = 640, MAX_TRIANGLES = 1024, THIN = 2;
 shared float values[CORNERS];
 shared uint signs[ROWS];  // of corner rows
 shared uvec2 rows[ROWS];  // crossed edges of corner rows, and the first one's number, in these layers
-// First x: the vertices' edges, y: occupied cells. Then the vertices' pixels and depth, as bits.
+// First x: the vertices' edges, y: occupied cells (x + 8 y + 64 z). Then the vertices' pixels and depth, as bits.
 shared uint vertex_x[MAX_VERTICES], vertex_y[MAX_VERTICES], vertex_z[MAX_VERTICES];
 shared uint triangles[MAX_TRIANGLES];  // cell | place in triangle_table << 9
 shared uint row_totals;                // vertices | cells << 16
@@ -105,45 +108,57 @@ void load_rows(uvec3 first, float iso) {
     }
 }
 
-// Lists the vertices on the edges of corner rows, and the occupied cells of cell rows, as cell |
-// case << 9; of the cell layers from `layer` on.
-void list_rows(uint layer, uint layers, ivec3 left) {
-    const uint exist = left.x >= 8 ? 0xffu : (1u << max(left.x, 0)) - 1, corners = exist << 1 | 1;
+// Cells along x that have surface. Rows beyond the block's last have none.
+uint occupied_in_row(uint row, ivec3 left) {
+    const uint y = row % 9, z = row / 9;
+    if (y >= 8 || z >= 8 || int(y) >= left.y || int(z) >= left.z) return 0;
+    return occupied_cells(CellRow(signs[row], signs[row + 1], signs[row + 9], signs[row + 10])) &
+           ((1u << clamp(left.x, 0, 8)) - 1);
+}
+
+#include "techniques/direct/octants.glsl"
+
+// Lists the vertices on the edges of corner rows, and the occupied cells of cell rows that are in
+// these octants; of the cell layers from `layer` on.
+void list_rows(uint layer, uint layers, ivec3 left, uint octants) {
+    const uint exist = (1u << clamp(left.x, 0, 8)) - 1, corners = exist << 1 | 1;
     for (uint row = gl_LocalInvocationIndex; row < ROWS; row += THREADS) {
         const uint y = row % 9, z = row / 9;
-        const CellRow cells = CellRow(signs[row], signs[min(row + 1, ROWS - 1)],
-                                      signs[min(row + 9, ROWS - 1)], signs[min(row + 10, ROWS - 1)]);
         uint mask = 0, occupied = 0;
         if (z >= layer && z <= layer + layers && int(y) <= left.y && int(z) <= left.z) {
-            const bool has_y = int(y) < min(left.y, 8);
-            const bool has_z = int(z) < min(left.z, int(layer + layers));
-            mask = exist | (has_y ? corners << 8 : 0) | (has_z ? corners << 17 : 0);
-            if (has_y && has_z) occupied = occupied_cells(cells) & exist;
+            mask = exist | (int(y) < min(left.y, 8) ? corners << 8 : 0) |
+                   (int(z) < min(left.z, int(layer + layers)) ? corners << 17 : 0);
+            if (z < layer + layers)
+                occupied = occupied_in_row(row, left) & cells_of_octants(octants, y, z);
         }
-        uint crossed = edge_bits(cells.a, cells.b, cells.c) & mask;
+        const uint crossed = edge_bits(signs[row], signs[min(row + 1, ROWS - 1)],
+                                       signs[min(row + 9, ROWS - 1)]) & mask;
         const uint counts = bitCount(crossed) | bitCount(occupied) << 16;
         uint first;
         RESERVE(row_totals, counts, first)
-        uint vertex = first & 0xffffu, i = first >> 16;
+        uint vertex = first & 0xffffu, cell = first >> 16;
         rows[row] = uvec2(crossed, vertex);
-        for (; crossed != 0 && vertex < MAX_VERTICES; crossed &= crossed - 1)
-            vertex_x[vertex++] = row << 5 | findLSB(crossed);
-        for (; occupied != 0; occupied &= occupied - 1) {
-            const uint x = findLSB(occupied);
-            vertex_y[i++] = z << 6 | y << 3 | x | cell_case(cells, x) << 9;
-        }
+        // Straight through all bits: that takes less time than to look for the next one set.
+        [[unroll]] for (uint bit = 0; bit < 26; ++bit)
+            if ((crossed >> bit & 1) != 0 && vertex < MAX_VERTICES)
+                vertex_x[vertex++] = row << 5 | bit;
+        [[unroll]] for (uint x = 0; x < 8; ++x)
+            if ((occupied >> x & 1) != 0) vertex_y[cell++] = z << 6 | y << 3 | x;
     }
 }
 
 void list_triangles() {
     const uint cell_total = row_totals >> 16;
     for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
-        const uint cell = vertex_y[i] & 511u, entry = 5 * (vertex_y[i] >> 9);
+        const uint cell = vertex_y[i], row = corner_row(cell >> 3 & 7u, cell >> 6);
+        const CellRow corners = CellRow(signs[row], signs[row + 1], signs[row + 9], signs[row + 10]);
+        const uint entry = 5 * cell_case(corners, cell & 7u);
         const uint count = triangle_table[entry] >> 29;
         uint triangle;
         RESERVE(triangle_total, count, triangle)
-        for (uint number = 0; number < count && triangle + number < MAX_TRIANGLES; ++number)
-            triangles[triangle + number] = cell | entry + number << 9;
+        [[unroll]] for (uint number = 0; number < 5; ++number)
+            if (number < count && triangle + number < MAX_TRIANGLES)
+                triangles[triangle + number] = cell | entry + number << 9;
     }
 }
 
@@ -165,7 +180,7 @@ uint corner_edge(Listed triangle, uint corner) {
 }
 
 // Clip space: the one place where voxels meet the camera.
-vec4 project(uint eye, uint edge, uvec3 first, float iso) {
+vec4 vertex_on(uint eye, uint edge, uvec3 first, float iso) {
     const uvec3 corner = edge_corner(edge);
     const uint axis = edge_axis(edge), at = corner.x + 9 * (edge >> 5);
     const float lower = values[at], upper = values[at + (axis == 0 ? 1 : axis == 1 ? 9 : 81)];
@@ -196,7 +211,7 @@ void rasterize(uint eye, uvec3 first, float iso) {
         Polygon polygon;
         polygon.count = 3;
         for (uint corner = 0; corner < 3; ++corner)
-            polygon.corners[corner] = project(eye, corner_edge(triangle, corner), first, iso);
+            polygon.corners[corner] = vertex_on(eye, corner_edge(triangle, corner), first, iso);
         if (needs_clipping(polygon.corners[0]) || needs_clipping(polygon.corners[1]) ||
             needs_clipping(polygon.corners[2]))
             clip_polygon(polygon);
@@ -210,7 +225,7 @@ void rasterize(uint eye, uvec3 first, float iso) {
 void project_vertices(uint eye, uvec3 first, float iso) {
     const uint vertex_total = row_totals & 0xffffu;
     for (uint i = gl_LocalInvocationIndex; i < vertex_total; i += THREADS) {
-        const vec3 screen = to_screen(project(eye, vertex_x[i], first, iso));
+        const vec3 screen = to_screen(vertex_on(eye, vertex_x[i], first, iso));
         vertex_x[i] = floatBitsToUint(screen.x);
         vertex_y[i] = floatBitsToUint(screen.y);
         vertex_z[i] = floatBitsToUint(screen.z);
@@ -242,13 +257,14 @@ bool fits() {
 void draw_block(uvec3 first, float iso) {
     const ivec3 left = cells_left(first);
     load_rows(first, iso);
+    const uint octants = OCCLUSION ? visible_octants(first, left) : ALL_OCTANTS;
     uint layer = 0, layers = BLOCK;
-    while (layer < BLOCK) {
+    while (layer < BLOCK && octants != 0) {
         bool drawn = true;
         for (uint eye = 0; eye < frame.counts.x && drawn; ++eye) {
             if (gl_LocalInvocationIndex == 0) row_totals = triangle_total = 0;
             barrier();
-            list_rows(layer, layers, left);
+            list_rows(layer, layers, left, octants);
             barrier();
             list_triangles();
             barrier();
