@@ -55,7 +55,7 @@ Renderer::State::State(Gpu& gpu, const Series& series, const RendererOptions& op
       options_(resolved(gpu, grid_.header().type, options)),
       placement_{grid_.header().affine, grid_.header().dims},
       technique_(make_technique({grid_, options_})),
-      shade_(grid_) {
+      shade_(grid_, options_.exact) {
     for (uint32_t i = 0; i < std::max(options.frames_in_flight, 1u); ++i)
         submissions_.push_back(std::make_unique<gpu::Submission>(device_));
     steps_in_flight_.resize(submissions_.size());

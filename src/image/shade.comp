@@ -77,7 +77,7 @@ Hit refine_hit(Ray ray, float t, float iso) {
 }
 
 // The same through the sampler: false position between points half a voxel, or else one voxel,
-// before and behind t.
+// before and behind t. Exact to about a 256th of a voxel.
 Hit refine_hit_filtered(Ray ray, float t, float iso) {
     const float voxel_step = 1.0 / length(ray.direction);
     const vec3 last = vec3(grid.voxels.xyz) - 1.0;
@@ -86,14 +86,14 @@ Hit refine_hit_filtered(Ray ray, float t, float iso) {
     for (int i = 1; i <= 2 && (value_a < 0.0) == (value_b < 0.0); ++i) {
         a = t - 0.5 * float(i) * voxel_step;
         b = t + 0.5 * float(i) * voxel_step;
-        value_a = sample_filtered(brick, clamp(ray.origin + a * ray.direction, vec3(0.0), last)) - iso;
-        value_b = sample_filtered(brick, clamp(ray.origin + b * ray.direction, vec3(0.0), last)) - iso;
+        value_a = sample_on_grid(brick, clamp(ray.origin + a * ray.direction, vec3(0.0), last)) - iso;
+        value_b = sample_on_grid(brick, clamp(ray.origin + b * ray.direction, vec3(0.0), last)) - iso;
     }
     Hit hit = Hit(t, value_b > value_a, (value_a < 0.0) != (value_b < 0.0));
     if (!hit.refined) return hit;
     for (int i = 0; i < 3; ++i) {
         hit.t = (a * value_b - b * value_a) / (value_b - value_a);
-        const float value = sample_filtered(brick, ray.origin + hit.t * ray.direction) - iso;
+        const float value = sample_on_grid(brick, ray.origin + hit.t * ray.direction) - iso;
         if ((value < 0.0) == (value_a < 0.0)) {
             a = hit.t;
             value_a = value;

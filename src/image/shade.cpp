@@ -7,18 +7,19 @@
 
 namespace isorast {
 
-Shade::Shade(const Grid& grid)
-    : grid_(grid), no_blocks_(grid.device(), 4, gpu::Buffer::Memory::device, "shading") {}
+Shade::Shade(const Grid& grid, bool exact)
+    : grid_(grid),
+      filtered_(!exact && grid.can_filter() && grid.stored().bits == 8),
+      no_blocks_(grid.device(), 4, gpu::Buffer::Memory::device, "shading") {}
 
 const gpu::Pipeline& Shade::pipeline(bool color, bool distance, bool mark) {
     gpu::Pipeline& pipeline = pipelines_[color + 2 * distance + 4 * mark];
     if (!pipeline) {
-        const bool filtered = grid_.can_filter() && grid_.stored().bits == 8;
         using gpu::Kind;
         const std::vector bindings{Kind::texture, Kind::texture, Kind::image, Kind::image,
                                    Kind::buffer};
         pipeline = gpu::Pipeline::compute(
-            grid_.device(), grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, filtered}),
+            grid_.device(), grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, filtered_}),
             grid_.pick(shade_comp, shade_comp_bricked));
     }
     return pipeline;

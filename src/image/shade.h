@@ -13,7 +13,8 @@ namespace isorast {
 
 class Shade {
 public:
-    explicit Shade(const Grid& grid);
+    // `exact`: never through the texture unit, whose filter has a grid of 1/256 voxels.
+    Shade(const Grid& grid, bool exact);
     // Writes target.color (unless the technique did: Shading::forward) and, if wanted,
     // target.distances.
     void record(gpu::Commands& commands, const Frame& frame, const Target& target);
@@ -22,6 +23,7 @@ private:
     const gpu::Pipeline& pipeline(bool color, bool distance, bool mark);
 
     const Grid& grid_;
+    bool filtered_;
     std::array<gpu::Pipeline, 8> pipelines_;  // made when first needed
     gpu::Buffer no_blocks_;                   // stands in where nothing is marked
 };

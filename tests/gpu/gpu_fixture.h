@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "gpu/device.h"
 #include "reference/agreement.h"
 #include "reference/scenes.h"
 
@@ -74,6 +75,13 @@ protected:
         }
         EXPECT_FALSE(result.empty());
         return result;
+    }
+
+    // GPUs filter voxels with weights of 1/256, and 16-bit ones to whole steps: raymarch (unless exact)
+    // and the shading of 8-bit voxels sample through that filter, and are only as exact.
+    bool filters() const { return !gpu.device().is_cpu(); }
+    bool marches_filtered(const Lane& lane) const {
+        return filters() && lane.options.technique == "raymarch" && !lane.options.exact;
     }
 
     // A frame that holds all that a comparison needs: depth, normals, and alpha 0 where nothing is.

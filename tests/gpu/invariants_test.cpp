@@ -80,11 +80,14 @@ TEST_F(GpuTest, BricksLeaveNoSeam) {
         auto bricked = lanes(volume, {.max_brick_side = 36});
         ASSERT_EQ(whole.size(), bricked.size());
         for (size_t lane = 0; lane < whole.size(); ++lane) {
+            // Now and then a filtered sample is on another side of the isovalue in another brick.
+            const uint64_t other =
+                marches_filtered(whole[lane]) ? SIZE.width * SIZE.height / 10000 : 0;
             for (int index = 0; index < view_count(6); ++index) {
                 Frame f = frame(view(volume, index), {level});
                 expect_same(whole[lane].renderer.render(f), bricked[lane].renderer.render(f),
                             diagonal(volume),
-                            fmt::format("{}, {}, view {}", whole[lane].name, name, index));
+                            fmt::format("{}, {}, view {}", whole[lane].name, name, index), other);
             }
             EXPECT_EQ(whole[lane].renderer.stats().bricks, 1u);
             EXPECT_GE(bricked[lane].renderer.stats().bricks, 4u);
@@ -183,9 +186,10 @@ TEST_F(GpuTest, VoxelTypesAreTheSameField) {
             Agreement a = agreement(picture(all[lane].renderer.render(f)),
                                     picture(expected[lane].renderer.render(f)), 4);
             std::string what = fmt::format("{} {}", all[lane].name, name_of(volume.type));
-            EXPECT_GE(a.overlap, 0.9998) << what;
-            EXPECT_LE(a.depth_rms, 1e-3) << what;
-            EXPECT_LE(a.normal_degrees, 0.2) << what;
+            EXPECT_GE(a.overlap, marches_filtered(all[lane]) ? 0.99 : 0.9998) << what;
+            EXPECT_LE(a.depth_rms, marches_filtered(all[lane]) ? 0.02 : filters() ? 0.005 : 1e-3)
+                << what;
+            EXPECT_LE(a.normal_degrees, filters() ? 0.5 : 0.2) << what;
             EXPECT_EQ(a.holes, 0u) << what;
         }
     }

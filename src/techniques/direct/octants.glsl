@@ -61,7 +61,9 @@ uint visible_octants(uvec3 first, ivec3 left) {
         barrier();
         if (eye == 0)
             for (uint row = thread; row < ROWS; row += THREADS) {
-                const uint cells = occupied_in_row(row, left);
+                if (!has_cells(row % 9, row / 9, left)) continue;
+                const uint exist = (1u << clamp(left.x, 0, 8)) - 1;
+                const uint cells = occupied_cells(cell_row(row)) & exist;
                 const uint halves = (cells & 0x0fu) != 0 ? 1 : 0;
                 const uint both = halves | ((cells & 0xf0u) != 0 ? 2 : 0);
                 if (both != 0)

@@ -62,23 +62,29 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 
 #include "techniques/direct/triangle.glsl"
 
-const uint ROWS = 81, CORNERS = 729;
-// What fits the 16 KiB of shared memory that every device has. Blocks with more are worked off in
-// layers of 2x8x8 cells, of which every one fits: they have at most 594 crossed edges and 640
-// triangles.
-const uint MAX_VERTICES = 640, MAX_TRIANGLES = 1024, THIN = 2;
+const uint ROWS = 81;  // of corners
+// Shared memory is what limits this shader: a GPU may have no more than 48 KiB a multiprocessor for
+// all workgroups on it, and hides their waiting for voxels and for each other by having many. So
+// voxels are packed, and the lists are as long as most blocks need; blocks with more are worked off
+// in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197 crossed
+// edges and 160 triangles.
+const uint MAX_VERTICES = 256, MAX_TRIANGLES = 384, CELL_ROWS = 64;
 
-shared float values[CORNERS];
-shared uint signs[ROWS];  // of corner rows
-shared uvec2 rows[ROWS];  // crossed edges of corner rows, and the first one's number, in these layers
-// First x: the vertices' edges, y: occupied cells (x + 8 y + 64 z). Then the vertices' pixels and depth, as bits.
-shared uint vertex_x[MAX_VERTICES], vertex_y[MAX_VERTICES], vertex_z[MAX_VERTICES];
-shared uint triangles[MAX_TRIANGLES];  // cell | place in triangle_table << 9
-shared uint row_totals;                // vertices | cells << 16
-shared uint triangle_total;
+const uint VALUES_OF_WORD = 32 / VOXEL_BITS, ROW_WORDS = (9 * VOXEL_BITS + 31) / 32;
+shared uint values[ROWS * ROW_WORDS];
+shared uint signs[ROWS];
+shared uvec2 rows[ROWS];  // crossed edges of a corner row, in this slab, and the first one's number
+shared uint triangles[MAX_TRIANGLES];  // cell (x + 8 y + 64 z) | place in triangle_table << 9
+shared uint totals;                    // vertices | triangles << 16
+#ifndef LARGE
+// First the edges that the vertices lie on, in the first array; then where they are.
+shared uint vertex_first[MAX_VERTICES], vertex_second[MAX_VERTICES];
+shared float vertex_depth[SNAPPED ? 1 : MAX_VERTICES];
+shared ivec2 origin;  // a pixel that a corner of the block lies in
+#endif
 
-// Takes `count` places in a list whose length is the shared `total`; `first` becomes the first one.
-// One atomic operation a subgroup where the device can count across it: threads wait for each other
+// Takes `count` places in lists whose lengths are the shared `total`; `first` becomes the first one.
+// One atomic operation a subgroup where the device can add across it: threads wait for each other
 // at the same address.
 #ifdef SUBGROUPS
 #define RESERVE(total, count, first)                       \
@@ -99,68 +105,93 @@ void load_rows(uvec3 first, float iso) {
         float loaded[9];
         [[unroll]] for (int x = 0; x < 9; ++x)
             loaded[x] = voxel(brick, start + ivec3(min(x, last), 0, 0));
-        uint bits = 0;
-        [[unroll]] for (int x = 0; x < 9; ++x) {
-            values[9 * row + x] = loaded[x];
+        uint bits = 0, word = 0;
+        [[unroll]] for (uint x = 0; x < 9; ++x) {
             bits |= (loaded[x] >= iso ? 1u : 0u) << x;
+            const uint value = VOXEL_BITS == 32 ? floatBitsToUint(loaded[x]) : uint(loaded[x]);
+            const uint place = x % VALUES_OF_WORD;
+            word = place == 0 ? value : word | value << VOXEL_BITS % 32 * place;
+            if (place == VALUES_OF_WORD - 1 || x == 8)
+                values[ROW_WORDS * row + x / VALUES_OF_WORD] = word;
         }
         signs[row] = bits;
     }
 }
 
-// Cells along x that have surface. Rows beyond the block's last have none.
-uint occupied_in_row(uint row, ivec3 left) {
-    const uint y = row % 9, z = row / 9;
-    if (y >= 8 || z >= 8 || int(y) >= left.y || int(z) >= left.z) return 0;
-    return occupied_cells(CellRow(signs[row], signs[row + 1], signs[row + 9], signs[row + 10])) &
-           ((1u << clamp(left.x, 0, 8)) - 1);
+float value_at(uint row, uint x) {
+    const uint word = values[ROW_WORDS * row + x / VALUES_OF_WORD];
+    if (VOXEL_BITS == 32) return uintBitsToFloat(word);
+    return float(bitfieldExtract(word, int(VOXEL_BITS % 32 * (x % VALUES_OF_WORD)), int(VOXEL_BITS)));
+}
+
+// The corner rows of a cell row, which begins at this one.
+CellRow cell_row(uint row) {
+    return CellRow(signs[row], signs[min(row + 1, ROWS - 1)], signs[min(row + 9, ROWS - 1)],
+                   signs[min(row + 10, ROWS - 1)]);
+}
+
+// Whether the block has cells there.
+bool has_cells(uint y, uint z, ivec3 left) {
+    return y < 8 && z < 8 && int(y) < left.y && int(z) < left.z;
 }
 
 #include "techniques/direct/octants.glsl"
 
-// Lists the vertices on the edges of corner rows, and the occupied cells of cell rows that are in
-// these octants; of the cell layers from `layer` on.
-void list_rows(uint layer, uint layers, ivec3 left, uint octants) {
-    const uint exist = (1u << clamp(left.x, 0, 8)) - 1, corners = exist << 1 | 1;
+// Consecutive cell rows, y + 8 z.
+struct Slab {
+    uint first, count;
+};
+
+bool in_slab(Slab slab, uint y, uint z, ivec3 left) {
+    return has_cells(y, z, left) && y + 8 * z - slab.first < slab.count;
+}
+
+// Crossed edges of a corner row that cells of the slab have.
+uint crossed_edges(CellRow row, uint y, uint z, Slab slab, ivec3 left, uint cells_x) {
+    // Cell rows around the corner row; y - 1 and z - 1 wrap to rows that are not there.
+    const bool here = in_slab(slab, y, z, left), below = in_slab(slab, y - 1, z, left);
+    const bool under = in_slab(slab, y, z - 1, left), both = in_slab(slab, y - 1, z - 1, left);
+    const uint corners_x = cells_x << 1 | cells_x;
+    return edge_bits(row.a, row.b, row.c) & ((here || below || under || both ? cells_x : 0) |
+                                             (here || under ? corners_x << 8 : 0) |
+                                             (here || below ? corners_x << 17 : 0));
+}
+
+// Lists the vertices of the slab, and the triangles of those of its cells that are in these octants.
+// Straight through all bits of a row: that takes less time than to look for the next one set.
+void list(Slab slab, ivec3 left, uint octants) {
+    const uint cells_x = (1u << clamp(left.x, 0, 8)) - 1;
     for (uint row = gl_LocalInvocationIndex; row < ROWS; row += THREADS) {
         const uint y = row % 9, z = row / 9;
-        uint mask = 0, occupied = 0;
-        if (z >= layer && z <= layer + layers && int(y) <= left.y && int(z) <= left.z) {
-            mask = exist | (int(y) < min(left.y, 8) ? corners << 8 : 0) |
-                   (int(z) < min(left.z, int(layer + layers)) ? corners << 17 : 0);
-            if (z < layer + layers)
-                occupied = occupied_in_row(row, left) & cells_of_octants(octants, y, z);
+        const CellRow corners = cell_row(row);
+        const uint crossed = crossed_edges(corners, y, z, slab, left, cells_x);
+        uint cells = occupied_cells(corners) & cells_x & cells_of_octants(octants, y, z);
+        if (!in_slab(slab, y, z, left)) cells = 0;
+        uint entries[8], count = 0;
+        [[unroll]] for (uint x = 0; x < 8; ++x) {
+            const uint entry = 5 * cell_case(corners, x);
+            entries[x] = (cells >> x & 1) == 0 ? 0 : entry | triangle_table[entry] >> 29 << 16;
+            count += entries[x] >> 16;
         }
-        const uint crossed = edge_bits(signs[row], signs[min(row + 1, ROWS - 1)],
-                                       signs[min(row + 9, ROWS - 1)]) & mask;
-        const uint counts = bitCount(crossed) | bitCount(occupied) << 16;
+        const uint counts = bitCount(crossed) | count << 16;
         uint first;
-        RESERVE(row_totals, counts, first)
-        uint vertex = first & 0xffffu, cell = first >> 16;
+        RESERVE(totals, counts, first)
+        uint vertex = first & 0xffffu, triangle = first >> 16;
         rows[row] = uvec2(crossed, vertex);
-        // Straight through all bits: that takes less time than to look for the next one set.
+#ifndef LARGE
         [[unroll]] for (uint bit = 0; bit < 26; ++bit)
             if ((crossed >> bit & 1) != 0 && vertex < MAX_VERTICES)
-                vertex_x[vertex++] = row << 5 | bit;
+                vertex_first[vertex++] = row << 5 | bit;
+#endif
         [[unroll]] for (uint x = 0; x < 8; ++x)
-            if ((occupied >> x & 1) != 0) vertex_y[cell++] = z << 6 | y << 3 | x;
+            [[unroll]] for (uint number = 0; number < 5; ++number)
+                if (number < entries[x] >> 16 && triangle < MAX_TRIANGLES)
+                    triangles[triangle++] =
+                        z << 6 | y << 3 | x | (entries[x] & 0xffffu) + number << 9;
     }
 }
 
-void list_triangles() {
-    const uint cell_total = row_totals >> 16;
-    for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
-        const uint cell = vertex_y[i], row = corner_row(cell >> 3 & 7u, cell >> 6);
-        const CellRow corners = CellRow(signs[row], signs[row + 1], signs[row + 9], signs[row + 10]);
-        const uint entry = 5 * cell_case(corners, cell & 7u);
-        const uint count = triangle_table[entry] >> 29;
-        uint triangle;
-        RESERVE(triangle_total, count, triangle)
-        [[unroll]] for (uint number = 0; number < 5; ++number)
-            if (number < count && triangle + number < MAX_TRIANGLES)
-                triangles[triangle + number] = cell | entry + number << 9;
-    }
-}
+bool fits() { return (totals & 0xffffu) <= MAX_VERTICES && totals >> 16 <= MAX_TRIANGLES; }
 
 // A listed triangle: the corner row and the place in it from which its corners are counted, and
 // where they are.
@@ -172,18 +203,13 @@ Listed listed(uint i) {
     return Listed(corner_row(cell >> 3 & 7u, cell >> 6), cell & 7u, triangle_table[triangles[i] >> 9]);
 }
 
-// The edge that a triangle's corner lies on: nine bits a corner, four for the row and five for the
-// edge's bit there.
-uint corner_edge(Listed triangle, uint corner) {
-    const uint where = triangle.corners >> 9 * corner;
-    return triangle.row + (where & 15u) << 5 | triangle.x + (where >> 4 & 31u);
-}
-
 // Clip space: the one place where voxels meet the camera.
 vec4 vertex_on(uint eye, uint edge, uvec3 first, float iso) {
     const uvec3 corner = edge_corner(edge);
-    const uint axis = edge_axis(edge), at = corner.x + 9 * (edge >> 5);
-    const float lower = values[at], upper = values[at + (axis == 0 ? 1 : axis == 1 ? 9 : 81)];
+    const uint axis = edge_axis(edge), row = edge >> 5;
+    const float lower = value_at(row, corner.x);
+    const float upper = value_at(row + (axis == 1 ? 1 : axis == 2 ? 9 : 0),
+                                 corner.x + (axis == 0 ? 1 : 0));
     precise const vec4 clip =
         frame.eyes[eye].clip_from_voxel * vec4(crossing(first + corner, axis, lower, upper, iso), 1.0);
     return clip;
@@ -204,8 +230,15 @@ vec3 to_screen(vec4 clip) {
 // So many threads take a triangle together.
 const uint TEAM = 32;
 
+// The edge that a triangle's corner lies on: nine bits a corner, four for the row and five for the
+// edge's bit there.
+uint corner_edge(Listed triangle, uint corner) {
+    const uint where = triangle.corners >> 9 * corner;
+    return triangle.row + (where & 15u) << 5 | triangle.x + (where >> 4 & 31u);
+}
+
 void rasterize(uint eye, uvec3 first, float iso) {
-    const uint thread = gl_LocalInvocationIndex % TEAM;
+    const uint thread = gl_LocalInvocationIndex % TEAM, triangle_total = totals >> 16;
     for (uint i = gl_LocalInvocationIndex / TEAM; i < triangle_total; i += THREADS / TEAM) {
         const Listed triangle = listed(i);
         Polygon polygon;
@@ -222,13 +255,26 @@ void rasterize(uint eye, uvec3 first, float iso) {
     }
 }
 #else
+void find_origin(uint eye, uvec3 first) {
+    if (gl_LocalInvocationIndex == THREADS - 1)
+        origin = ivec2(to_screen(frame.eyes[eye].clip_from_voxel * vec4(first, 1.0)).xy);
+}
+
+// On the grid of 1/256 pixels, a vertex of a small block lies less than 128 pixels from its origin:
+// two times 16 bits.
 void project_vertices(uint eye, uvec3 first, float iso) {
-    const uint vertex_total = row_totals & 0xffffu;
+    const uint vertex_total = totals & 0xffffu;
     for (uint i = gl_LocalInvocationIndex; i < vertex_total; i += THREADS) {
-        const vec3 screen = to_screen(vertex_on(eye, vertex_x[i], first, iso));
-        vertex_x[i] = floatBitsToUint(screen.x);
-        vertex_y[i] = floatBitsToUint(screen.y);
-        vertex_z[i] = floatBitsToUint(screen.z);
+        const vec3 screen = to_screen(vertex_on(eye, vertex_first[i], first, iso));
+        if (SNAPPED) {
+            const ivec2 place = ivec2(screen.xy * 256.0) - 256 * origin;
+            vertex_first[i] = uint(place.x & 0xffff) | uint(place.y) << 16;
+            vertex_second[i] = floatBitsToUint(screen.z);
+        } else {
+            vertex_first[i] = floatBitsToUint(screen.x);
+            vertex_second[i] = floatBitsToUint(screen.y);
+            vertex_depth[i] = screen.z;
+        }
     }
 }
 
@@ -236,12 +282,16 @@ vec3 corner_vertex(Listed triangle, uint corner) {
     const uint where = triangle.corners >> 9 * corner;
     const uvec2 row = rows[triangle.row + (where & 15u)];
     const uint bit = triangle.x + (where >> 4 & 31u), i = row.y + bitCount(row.x & (1u << bit) - 1);
-    return uintBitsToFloat(uvec3(vertex_x[i], vertex_y[i], vertex_z[i]));
+    const float second = uintBitsToFloat(vertex_second[i]);
+    if (!SNAPPED) return vec3(uintBitsToFloat(vertex_first[i]), second, vertex_depth[i]);
+    const int place = int(vertex_first[i]);
+    return vec3(vec2(origin) + vec2(place << 16 >> 16, place >> 16) / 256.0, second);
 }
 
 void rasterize(uint eye, uvec3 first, float iso) {
     project_vertices(eye, first, iso);
     barrier();
+    const uint triangle_total = totals >> 16;
     for (uint i = gl_LocalInvocationIndex; i < triangle_total; i += THREADS) {
         const Listed triangle = listed(i);
         rasterize_small(eye, corner_vertex(triangle, 0), corner_vertex(triangle, 1),
@@ -250,31 +300,29 @@ void rasterize(uint eye, uvec3 first, float iso) {
 }
 #endif
 
-bool fits() {
-    return (row_totals & 0xffffu) <= MAX_VERTICES && triangle_total <= MAX_TRIANGLES;
-}
-
 void draw_block(uvec3 first, float iso) {
     const ivec3 left = cells_left(first);
     load_rows(first, iso);
     const uint octants = OCCLUSION ? visible_octants(first, left) : ALL_OCTANTS;
-    uint layer = 0, layers = BLOCK;
-    while (layer < BLOCK && octants != 0) {
+    Slab slab = Slab(0, CELL_ROWS);
+    while (slab.first < CELL_ROWS && octants != 0) {
         bool drawn = true;
         for (uint eye = 0; eye < frame.counts.x && drawn; ++eye) {
-            if (gl_LocalInvocationIndex == 0) row_totals = triangle_total = 0;
+            if (gl_LocalInvocationIndex == 0) totals = 0;
+#ifndef LARGE
+            find_origin(eye, first);
+#endif
             barrier();
-            list_rows(layer, layers, left, octants);
-            barrier();
-            list_triangles();
+            list(slab, left, octants);
             barrier();
             drawn = fits();
             if (drawn) rasterize(eye, first, iso);
             barrier();
         }
-        if (drawn) layer += layers;
-        else layers = THIN;
+        if (drawn) slab.first += slab.count;
+        else slab.count /= 2;
     }
+    barrier();
 }
 
 // A workgroup draws one block of its quartet, or all.
