@@ -39,7 +39,7 @@ public:
                          "a test");
         read_ = gpu::Buffer(device, bytes_, Memory::host, "a test");
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
-                                   Kind::image,  Kind::buffer};
+                                   Kind::image};
         const std::array<std::span<const uint32_t>, 2> code{rasterize_counting,
                                                             rasterize_large_counting};
         for (size_t i = 0; i < code.size(); ++i)
@@ -63,7 +63,7 @@ public:
             for (const auto size : {Culling::Size::small, Culling::Size::large}) {
                 const uint32_t draw = culling_.first_draw(size);
                 commands.bind(pipelines_[size_t(size)],
-                              {culling_.draws(), culling_.drawn_blocks(), table_, counts_, counts_, table_});
+                              {culling_.draws(), culling_.drawn_blocks(), table_, counts_, counts_});
                 commands.push(std::array<uint32_t, 3>{0, 0, draw});
                 commands.dispatch_indirect(culling_.draws(), draw * sizeof(shared::Draw));
             }

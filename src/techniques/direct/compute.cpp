@@ -46,11 +46,9 @@ public:
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override {
         for (const Size size : {Size::large, Size::small}) {
-            const gpu::Buffer* pyramid = culling.pyramid();
-            commands.bind(pipeline(frame, size, pyramid),
+            commands.bind(pipeline(frame, size),
                           {culling.draws(), culling.drawn_blocks(), triangle_table_,
-                           gpu::Binding(target.depth.bits_view()), target.surfaces,
-                           pyramid ? *pyramid : triangle_table_});
+                           gpu::Binding(target.depth.bits_view()), target.surfaces});
             const uint32_t first = culling.first_draw(size);
             for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
                 commands.push(Push{draw, surface, first});
@@ -63,17 +61,17 @@ public:
     uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
 
 private:
-    const gpu::Pipeline& pipeline(const Frame& frame, Size size, bool occlusion) {
+    const gpu::Pipeline& pipeline(const Frame& frame, Size size) {
         const bool numbered = frame.isovalues.size() > 1, clipped = !frame.clips.empty();
         const bool large = size == Size::large;
-        gpu::Pipeline& pipeline = pipelines_[size_t(numbered) + 2 * clipped + 4 * large + 8 * occlusion];
+        gpu::Pipeline& pipeline = pipelines_[size_t(numbered) + 2 * clipped + 4 * large];
         if (pipeline) return pipeline;
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
-                                   Kind::image,  Kind::buffer};
+                                   Kind::image};
         const bool snapped = !grid_.device().is_cpu();
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
-            grid_.pipeline_info("rasterize", bindings, sizeof(Push), {clipped, snapped, occlusion && !large}),
+            grid_.pipeline_info("rasterize", bindings, sizeof(Push), {clipped, snapped}),
             code(numbered, large));
         return pipeline;
     }
@@ -92,7 +90,7 @@ private:
     const Grid& grid_;
     gpu::Buffer triangle_table_;
     gpu::Pipeline clear_;
-    std::array<gpu::Pipeline, 16> pipelines_;  // made when first needed
+    std::array<gpu::Pipeline, 8> pipelines_;  // made when first needed
 };
 
 // Where an edge of a cell is found from the cell's own corner row and place in it: rows on, and

@@ -3,7 +3,9 @@
 // Workgroup: four active groups at a time. Thread: one block. Out: the list of blocks to draw
 // and the indirect arguments to draw it. Culling is in two passes (Kreskowski 2022, section 3.5 and
 // figure 2): blocks that the last frame saw are drawn first; then those of all others that they do
-// not hide, by a depth pyramid here, or as raster proxies have found before.
+// not hide: as raster proxies have found before, or, HIZ, by a depth pyramid, and, for what that
+// leaves, pixel by pixel.
+// variant cull_hiz: -DHIZ
 #include "shaders/scene.glsl"
 #include "techniques/direct/limits.glsl"
 #include "techniques/direct/list.glsl"
@@ -12,18 +14,25 @@
 
 layout(local_size_x = CULL_GROUPS * GROUP_BLOCKS) in;
 
-const uint ALL = 0, SEEN = 1, UNSEEN = 2, TESTED = 3;
-layout(constant_id = 1) const uint SELECT = ALL;
-layout(constant_id = 2) const bool TWO_SIZES = false;  // a list of its own for large blocks
+layout(constant_id = 1) const bool TWO_SIZES = false;  // a list of its own for large blocks
+const uint ALL = 0, SEEN = 1, TESTED = 2;
+#ifdef HIZ
+const uint SELECT = 3;
+#else
+layout(constant_id = 2) const uint SELECT = ALL;
+#endif
 
 layout(set = 1, binding = 1, std430) buffer Draws { Draw draws[]; };
 // Quartets of small blocks from the start on, of large ones from the end backwards.
 layout(set = 1, binding = 2, std430) writeonly buffer DrawnBlocks { uint drawn_quartets[]; };
 layout(set = 1, binding = 3, std430) buffer CounterBlock { Counters counters; };
 layout(set = 1, binding = 4, std430) readonly buffer SeenBlocks { uint seen_blocks[]; };
-// What an occlusion test has left: the depth pyramid (UNSEEN), or a bit a block (TESTED).
+#ifdef HIZ
 layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
+layout(set = 1, binding = 6) uniform texture2DArray depth;  // drawn so far
+#else
 layout(set = 1, binding = 5, std430) readonly buffer TestedBlocks { uint tested_blocks[]; };
+#endif
 layout(push_constant) uniform Push {
     uint first_draw;         // of the list of small blocks; that of large ones follows
     uint draws_of_list;
@@ -35,25 +44,42 @@ const uint LONG = 8192;  // quartets
 shared uint drawn_masks[CULL_GROUPS], large_masks[CULL_GROUPS];
 shared uint quartets[2], first_entry[2];  // small, large
 
-#include "shaders/hidden.glsl"
+void corners_of(uvec3 block, out vec3 low, out vec3 high) {
+    low = vec3(block * BLOCK);
+    high = min(low + float(BLOCK), vec3(grid.voxels.xyz) - 1.0);
+}
 
-// True if an eye may see the block. `seen`: in the last frame, or by the raster proxies.
-bool is_selected(uvec3 block, bool seen, out bool large) {
-    large = false;
-    if (SELECT == TESTED ? !seen : SELECT != ALL && seen != (SELECT == SEEN)) return false;
-    const vec3 low = vec3(block * BLOCK);
-    const vec3 high = min(low + float(BLOCK), vec3(grid.voxels.xyz) - 1.0);
+#ifdef HIZ
+#include "shaders/hidden.glsl"
+#include "techniques/direct/in_sight.glsl"
+
+shared uint candidates[CULL_GROUPS * GROUP_BLOCKS];  // group << 5 | place
+shared uint candidate_total;
+#endif
+
+// True if an eye may see the block. `seen`: in the last frame, or by the raster proxies. `look`: only
+// if a closer look finds it in sight.
+bool is_selected(uvec3 block, bool seen, out bool large, out bool look) {
+    large = look = false;
+    if (SELECT != ALL && seen != (SELECT == SEEN || SELECT == TESTED)) return false;
+    vec3 low, high;
+    corners_of(block, low, high);
     bool selected = false;
     for (uint eye = 0; eye < frame.counts.x; ++eye) {
-        if ((SELECT == SEEN || SELECT == UNSEEN) && !in_frustum(eye, low, high)) continue;
+        if (SELECT != ALL && SELECT != TESTED && !in_frustum(eye, low, high)) continue;
         Extent extent;
         const bool whole = project(eye, low, high, extent);
-        if (SELECT == UNSEEN && whole && is_hidden(eye, extent)) continue;
+#ifdef HIZ
+        if (whole && is_hidden(eye, extent)) continue;
+#endif
         selected = true;
         large = large || !whole ||
                 any(greaterThan(extent.greatest - extent.least, vec2(SMALL_SIDE))) ||
                 any(greaterThan(abs(extent.least), vec2(GUARD)));
     }
+#ifdef HIZ
+    look = selected && !large;
+#endif
     return selected;
 }
 
@@ -84,21 +110,41 @@ void main() {
          first += CULL_GROUPS * gl_NumWorkGroups.x) {
         if (thread < CULL_GROUPS) drawn_masks[thread] = large_masks[thread] = 0;
         if (thread < 2) quartets[thread] = 0;
+#ifdef HIZ
+        if (thread == 0) candidate_total = 0;
+#endif
         barrier();
         if (first + lane < group_count) {
             const uvec2 group = active_groups[first + lane];
-            const uint marks = SELECT == ALL      ? 0
-                               : SELECT == TESTED ? tested_blocks[group.x]
-                                                  : seen_blocks[group.x];
-            bool large;
+#ifdef HIZ
+            const uint marks = seen_blocks[group.x];
+#else
+            const uint marks = SELECT == TESTED ? tested_blocks[group.x] : seen_blocks[group.x];
+#endif
+            bool large, look;
             if ((group.y >> place & 1) != 0 &&
                 is_selected(group_origin(group.x) + block_in_group(place),
-                            (marks >> place & 1) != 0, large)) {
-                atomicOr(drawn_masks[lane], 1u << place);
+                            (marks >> place & 1) != 0, large, look)) {
+#ifdef HIZ
+                if (look) candidates[atomicAdd(candidate_total, 1)] = lane << 5 | place;
+#endif
+                if (!look) atomicOr(drawn_masks[lane], 1u << place);
                 if (TWO_SIZES && large) atomicOr(large_masks[lane], 1u << place);
             }
         }
         barrier();
+#ifdef HIZ
+        // A team of threads for each candidate.
+        for (uint i = thread / TEAM; i < candidate_total; i += CULL_GROUPS * GROUP_BLOCKS / TEAM) {
+            const uint of = candidates[i] >> 5, at = candidates[i] & 31u;
+            vec3 low, high;
+            corners_of(group_origin(active_groups[first + of].x) + block_in_group(at), low, high);
+            for (uint eye = 0; eye < frame.counts.x; ++eye)
+                if (in_frustum(eye, low, high) && is_in_sight(eye, low, high, thread % TEAM))
+                    atomicOr(drawn_masks[of], 1u << at);
+        }
+        barrier();
+#endif
         // The first threads: a quartet each. It is large if one of its blocks is.
         uint mask = 0, size = 0, number = 0;
         const uint of_group = thread / QUARTETS, quartet = thread % QUARTETS;

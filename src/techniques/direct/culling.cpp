@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cull_comp.h"
+#include "cull_hiz.h"
 #include "find_active_comp.h"
 #include "find_first_visible_comp.h"
 
@@ -60,9 +61,13 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     };
     find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
     const std::vector lists(6, Kind::buffer);
-    const uint32_t unseen = occlusion_->kind() == Occlusion::hiz ? 2 : 3;  // UNSEEN, TESTED
     for (uint32_t which = 0; which < select_.size(); ++which)
-        select_[which] = make("cull", lists, 12, {which < 2 ? which : unseen, two_sizes}, cull_comp);
+        select_[which] = make("cull", lists, 12, {two_sizes, which}, cull_comp);
+    if (occlusion_->kind() == Occlusion::hiz) {
+        std::vector looking = lists;
+        looking.push_back(Kind::texture);
+        select_[size_t(Select::unseen)] = make("cull", looking, 12, {two_sizes}, cull_hiz);
+    }
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     if (grid.info().blocks.w >= WORTH_GUESSING)
         find_first_visible_ =
@@ -145,12 +150,15 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
     struct Push {
         uint32_t first_draw, draws_of_list, workgroups;
     };
-    const bool tested = which == Select::unseen && occlusion() == Occlusion::hiz;
-    pyramid_ = tested ? &occlusion_->result() : nullptr;
     first_draw_ = (2 * surface + (which == Select::unseen ? 1 : 0)) * sizes_ * draw_count_;
-    commands.bind(select_[size_t(which)],
-                  {active_groups_[surface], draws_, drawn_blocks_, counters_, visible_[seen_],
-                   which == Select::unseen ? gpu::Binding(occlusion_->result()) : counters_});
+    const gpu::Buffer& blocks = visible_[seen_];
+    if (which == Select::unseen && occlusion() == Occlusion::hiz)
+        commands.bind(select_[size_t(which)], {active_groups_[surface], draws_, drawn_blocks_,
+                                               counters_, blocks, occlusion_->result(), *depth_});
+    else
+        commands.bind(select_[size_t(which)],
+                      {active_groups_[surface], draws_, drawn_blocks_, counters_, blocks,
+                       which == Select::unseen ? occlusion_->result() : blocks});
     commands.push(Push{first_draw_, draw_count_, workgroups_});
     commands.dispatch_indirect(active_groups_[surface], 0);
     commands.barrier();

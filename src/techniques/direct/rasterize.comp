@@ -33,13 +33,10 @@ layout(set = 1, binding = 2, std430) readonly buffer TriangleTable { uint triang
 // Depth as the bits of floats: of numbers that are not negative, the order is the same.
 layout(set = 1, binding = 3, r32ui) uniform uimage2DArray depth_bits;
 layout(set = 1, binding = 4, r32ui) writeonly uniform uimage2DArray surface_numbers;
-layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
 layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 // Whether depth is the plane through the vertices' positions on the grid of 1/256 pixels, as GPUs
 // have it, or through those before rounding, as lavapipe has it.
 layout(constant_id = 2) const bool SNAPPED = false;
-// Whether eighths of the block that depth already drawn hides, by the pyramid, are left out.
-layout(constant_id = 3) const bool OCCLUSION = false;
 
 #include "shaders/cell_rows.glsl"
 
@@ -68,22 +65,22 @@ const uint ROWS = 81;  // of corners
 // voxels are packed, and the lists are as long as most blocks need; blocks with more are worked off
 // in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197 crossed
 // edges and 160 triangles.
-const uint MAX_VERTICES = 256, MAX_TRIANGLES = 384, CELL_ROWS = 64;
+const uint MAX_VERTICES = 256, MAX_CELLS = 256, MAX_TRIANGLES = 384, CELL_ROWS = 64;
 
 const uint VALUES_OF_WORD = 32 / VOXEL_BITS, ROW_WORDS = (9 * VOXEL_BITS + 31) / 32;
 shared uint values[ROWS * ROW_WORDS];
 shared uint signs[ROWS];
 shared uvec2 rows[ROWS];  // crossed edges of a corner row, in this slab, and the first one's number
 shared uint triangles[MAX_TRIANGLES];  // cell (x + 8 y + 64 z) | place in triangle_table << 9
-shared uint totals;                    // vertices | triangles << 16
-#ifndef LARGE
-// First the edges that the vertices lie on, in the first array; then where they are.
-shared uint vertex_first[MAX_VERTICES], vertex_second[MAX_VERTICES];
-shared float vertex_depth[SNAPPED ? 1 : MAX_VERTICES];
+shared uint row_totals;                // vertices | cells << 16
+shared uint triangle_total;
+// First the edges that vertices lie on, and the occupied cells. Then the vertices' pixels on the
+// grid of 1/256, from the origin, x | y << 16; and their depth.
+shared uint vertex_pixels[MAX_VERTICES], vertex_depths[MAX_CELLS];
+shared vec2 vertex_unsnapped[SNAPPED ? 1 : MAX_VERTICES];
 shared ivec2 origin;  // a pixel that a corner of the block lies in
-#endif
 
-// Takes `count` places in lists whose lengths are the shared `total`; `first` becomes the first one.
+// Takes `count` places in a list whose length is the shared `total`; `first` becomes the first one.
 // One atomic operation a subgroup where the device can add across it: threads wait for each other
 // at the same address.
 #ifdef SUBGROUPS
@@ -130,20 +127,15 @@ CellRow cell_row(uint row) {
                    signs[min(row + 10, ROWS - 1)]);
 }
 
-// Whether the block has cells there.
-bool has_cells(uint y, uint z, ivec3 left) {
-    return y < 8 && z < 8 && int(y) < left.y && int(z) < left.z;
-}
-
-#include "techniques/direct/octants.glsl"
-
 // Consecutive cell rows, y + 8 z.
 struct Slab {
     uint first, count;
 };
 
+// Whether a cell row is in the slab, and in the volume.
 bool in_slab(Slab slab, uint y, uint z, ivec3 left) {
-    return has_cells(y, z, left) && y + 8 * z - slab.first < slab.count;
+    return y < 8 && z < 8 && int(y) < left.y && int(z) < left.z &&
+           y + 8 * z - slab.first < slab.count;
 }
 
 // Crossed edges of a corner row that cells of the slab have.
@@ -157,41 +149,48 @@ uint crossed_edges(CellRow row, uint y, uint z, Slab slab, ivec3 left, uint cell
                                              (here || below ? corners_x << 17 : 0));
 }
 
-// Lists the vertices of the slab, and the triangles of those of its cells that are in these octants.
-// Straight through all bits of a row: that takes less time than to look for the next one set.
-void list(Slab slab, ivec3 left, uint octants) {
+// Lists the slab's vertices and its occupied cells.
+void list_rows(Slab slab, ivec3 left) {
     const uint cells_x = (1u << clamp(left.x, 0, 8)) - 1;
     for (uint row = gl_LocalInvocationIndex; row < ROWS; row += THREADS) {
         const uint y = row % 9, z = row / 9;
         const CellRow corners = cell_row(row);
-        const uint crossed = crossed_edges(corners, y, z, slab, left, cells_x);
-        uint cells = occupied_cells(corners) & cells_x & cells_of_octants(octants, y, z);
-        if (!in_slab(slab, y, z, left)) cells = 0;
-        uint entries[8], count = 0;
-        [[unroll]] for (uint x = 0; x < 8; ++x) {
-            const uint entry = 5 * cell_case(corners, x);
-            entries[x] = (cells >> x & 1) == 0 ? 0 : entry | triangle_table[entry] >> 29 << 16;
-            count += entries[x] >> 16;
-        }
-        const uint counts = bitCount(crossed) | count << 16;
+        uint crossed = crossed_edges(corners, y, z, slab, left, cells_x);
+        uint cells = in_slab(slab, y, z, left) ? occupied_cells(corners) & cells_x : 0;
+        const uint counts = bitCount(crossed) | bitCount(cells) << 16;
         uint first;
-        RESERVE(totals, counts, first)
-        uint vertex = first & 0xffffu, triangle = first >> 16;
-        rows[row] = uvec2(crossed, vertex);
-#ifndef LARGE
-        [[unroll]] for (uint bit = 0; bit < 26; ++bit)
-            if ((crossed >> bit & 1) != 0 && vertex < MAX_VERTICES)
-                vertex_first[vertex++] = row << 5 | bit;
-#endif
-        [[unroll]] for (uint x = 0; x < 8; ++x)
-            [[unroll]] for (uint number = 0; number < 5; ++number)
-                if (number < entries[x] >> 16 && triangle < MAX_TRIANGLES)
-                    triangles[triangle++] =
-                        z << 6 | y << 3 | x | (entries[x] & 0xffffu) + number << 9;
+        RESERVE(row_totals, counts, first)
+        rows[row] = uvec2(crossed, first & 0xffffu);
+        const uint end = first + counts;
+        uint vertex = end & 0xffffu, cell = end >> 16;
+        if (vertex > MAX_VERTICES || cell > MAX_CELLS) continue;  // too many, see fits()
+        for (; crossed != 0; crossed ^= 1u << findMSB(crossed))
+            vertex_pixels[--vertex] = row << 5 | findMSB(crossed);
+        for (; cells != 0; cells ^= 1u << findMSB(cells))
+            vertex_depths[--cell] = z << 6 | y << 3 | findMSB(cells);
     }
 }
 
-bool fits() { return (totals & 0xffffu) <= MAX_VERTICES && totals >> 16 <= MAX_TRIANGLES; }
+void list_triangles() {
+    const uint cell_total = min(row_totals >> 16, MAX_CELLS);
+    for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
+        const uint cell = vertex_depths[i] & 511u;
+        const uint entry =
+            5 * cell_case(cell_row(corner_row(cell >> 3 & 7u, cell >> 6)), cell & 7u);
+        const uint count = triangle_table[entry] >> 29;
+        uint first;
+        RESERVE(triangle_total, count, first)
+        if (first + count > MAX_TRIANGLES) continue;
+        [[unroll]] for (uint number = 0; number < 5; ++number)
+            if (number < count) triangles[first + number] = cell | entry + number << 9;
+    }
+}
+
+// Whether the lists hold all. If rows do not fit, some cells are not listed, nor what they hold.
+bool fits() {
+    return (row_totals & 0xffffu) <= MAX_VERTICES && row_totals >> 16 <= MAX_CELLS &&
+           triangle_total <= MAX_TRIANGLES;
+}
 
 // A listed triangle: the corner row and the place in it from which its corners are counted, and
 // where they are.
@@ -221,7 +220,7 @@ vec3 to_screen(vec4 clip) {
     precise const float inverse = 1.0 / clip.w;
     precise const vec2 pixel = clip.xy * inverse * half_size + (half_size - 0.5);
     precise const float depth = clip.z * inverse;
-    return vec3(SNAPPED ? roundEven(pixel * 256.0) / 256.0 : pixel, depth);
+    return vec3(pixel, depth);
 }
 
 #ifdef LARGE
@@ -238,7 +237,7 @@ uint corner_edge(Listed triangle, uint corner) {
 }
 
 void rasterize(uint eye, uvec3 first, float iso) {
-    const uint thread = gl_LocalInvocationIndex % TEAM, triangle_total = totals >> 16;
+    const uint thread = gl_LocalInvocationIndex % TEAM;
     for (uint i = gl_LocalInvocationIndex / TEAM; i < triangle_total; i += THREADS / TEAM) {
         const Listed triangle = listed(i);
         Polygon polygon;
@@ -249,9 +248,9 @@ void rasterize(uint eye, uvec3 first, float iso) {
             needs_clipping(polygon.corners[2]))
             clip_polygon(polygon);
         for (uint corner = 2; corner < polygon.count; ++corner)
-            rasterize_large(eye, to_screen(polygon.corners[0]),
-                            to_screen(polygon.corners[corner - 1]),
-                            to_screen(polygon.corners[corner]), thread, TEAM);
+            rasterize_large(eye, vertex_at(to_screen(polygon.corners[0])),
+                            vertex_at(to_screen(polygon.corners[corner - 1])),
+                            vertex_at(to_screen(polygon.corners[corner])), thread, TEAM);
     }
 }
 #else
@@ -263,38 +262,34 @@ void find_origin(uint eye, uvec3 first) {
 // On the grid of 1/256 pixels, a vertex of a small block lies less than 128 pixels from its origin:
 // two times 16 bits.
 void project_vertices(uint eye, uvec3 first, float iso) {
-    const uint vertex_total = totals & 0xffffu;
+    const uint vertex_total = row_totals & 0xffffu;
     for (uint i = gl_LocalInvocationIndex; i < vertex_total; i += THREADS) {
-        const vec3 screen = to_screen(vertex_on(eye, vertex_first[i], first, iso));
-        if (SNAPPED) {
-            const ivec2 place = ivec2(screen.xy * 256.0) - 256 * origin;
-            vertex_first[i] = uint(place.x & 0xffff) | uint(place.y) << 16;
-            vertex_second[i] = floatBitsToUint(screen.z);
-        } else {
-            vertex_first[i] = floatBitsToUint(screen.x);
-            vertex_second[i] = floatBitsToUint(screen.y);
-            vertex_depth[i] = screen.z;
-        }
+        const Vertex vertex = vertex_at(to_screen(vertex_on(eye, vertex_pixels[i], first, iso)));
+        const ivec2 from_origin = vertex.pixel - 256 * origin;
+        vertex_pixels[i] = uint(from_origin.x & 0xffff) | uint(from_origin.y) << 16;
+        vertex_depths[i] = floatBitsToUint(vertex.depth);
+        if (!SNAPPED) vertex_unsnapped[i] = vertex.unsnapped;
     }
 }
 
-vec3 corner_vertex(Listed triangle, uint corner) {
+Vertex corner_vertex(Listed triangle, uint corner) {
     const uint where = triangle.corners >> 9 * corner;
     const uvec2 row = rows[triangle.row + (where & 15u)];
     const uint bit = triangle.x + (where >> 4 & 31u), i = row.y + bitCount(row.x & (1u << bit) - 1);
-    const float second = uintBitsToFloat(vertex_second[i]);
-    if (!SNAPPED) return vec3(uintBitsToFloat(vertex_first[i]), second, vertex_depth[i]);
-    const int place = int(vertex_first[i]);
-    return vec3(vec2(origin) + vec2(place << 16 >> 16, place >> 16) / 256.0, second);
+    const int pixel = int(vertex_pixels[i]);
+    Vertex vertex;
+    vertex.pixel = ivec2(pixel << 16 >> 16, pixel >> 16);
+    vertex.depth = uintBitsToFloat(vertex_depths[i]);
+    vertex.unsnapped = SNAPPED ? vec2(vertex.pixel + 256 * origin) / 256.0 : vertex_unsnapped[i];
+    return vertex;
 }
 
 void rasterize(uint eye, uvec3 first, float iso) {
     project_vertices(eye, first, iso);
     barrier();
-    const uint triangle_total = totals >> 16;
     for (uint i = gl_LocalInvocationIndex; i < triangle_total; i += THREADS) {
         const Listed triangle = listed(i);
-        rasterize_small(eye, corner_vertex(triangle, 0), corner_vertex(triangle, 1),
+        rasterize_small(eye, origin, corner_vertex(triangle, 0), corner_vertex(triangle, 1),
                         corner_vertex(triangle, 2));
     }
 }
@@ -303,17 +298,18 @@ void rasterize(uint eye, uvec3 first, float iso) {
 void draw_block(uvec3 first, float iso) {
     const ivec3 left = cells_left(first);
     load_rows(first, iso);
-    const uint octants = OCCLUSION ? visible_octants(first, left) : ALL_OCTANTS;
     Slab slab = Slab(0, CELL_ROWS);
-    while (slab.first < CELL_ROWS && octants != 0) {
+    while (slab.first < CELL_ROWS) {
         bool drawn = true;
         for (uint eye = 0; eye < frame.counts.x && drawn; ++eye) {
-            if (gl_LocalInvocationIndex == 0) totals = 0;
+            if (gl_LocalInvocationIndex == 0) row_totals = triangle_total = 0;
 #ifndef LARGE
             find_origin(eye, first);
 #endif
             barrier();
-            list(slab, left, octants);
+            list_rows(slab, left);
+            barrier();
+            list_triangles();
             barrier();
             drawn = fits();
             if (drawn) rasterize(eye, first, iso);
@@ -322,7 +318,6 @@ void draw_block(uvec3 first, float iso) {
         if (drawn) slab.first += slab.count;
         else slab.count /= 2;
     }
-    barrier();
 }
 
 // A workgroup draws one block of its quartet, or all.

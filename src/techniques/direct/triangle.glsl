@@ -1,17 +1,28 @@
 // One triangle on the pixel grid, as hardware does it: positions snapped to 1/256 of a pixel, exact
 // integer edge functions, the top-left rule, depth as a plane. Needs write_pixel(eye, pixel, depth,
-// front). Corners are given in pixels, from the middle of the first one, and depth.
+// front), and SNAPPED. What is computed here is precise, so that a block gets the same bits from one
+// thread a triangle and from several.
 
-struct Box {
-    ivec2 low, high;  // pixels on the screen that a triangle may cover
+struct Vertex {
+    ivec2 pixel;     // 1/256 of a pixel, from the middle of the origin, a pixel
+    vec2 unsnapped;  // pixels, from the middle of the picture's first one; the same place if SNAPPED
+    float depth;
 };
 
-ivec2 snapped(vec3 corner) { return ivec2(roundEven(corner.xy * 256.0)); }
+Vertex vertex_at(vec3 screen) {
+    const vec2 snapped = roundEven(screen.xy * 256.0);
+    return Vertex(ivec2(snapped), SNAPPED ? snapped / 256.0 : screen.xy, screen.z);
+}
+
+// Pixels on the screen that a triangle may cover.
+struct Box {
+    ivec2 low, high;
+};
 
 // False: the triangle covers no pixel.
-bool find_box(ivec2 a, ivec2 b, ivec2 c, out Box box) {
-    box.low = max((min(min(a, b), c) + 255) >> 8, ivec2(0));
-    box.high = min((max(max(a, b), c) - 1) >> 8, ivec2(frame.size.xy) - 1);
+bool find_box(ivec2 origin, ivec2 a, ivec2 b, ivec2 c, out Box box) {
+    box.low = max((min(min(a, b), c) + 255) >> 8, -origin);
+    box.high = min((max(max(a, b), c) - 1) >> 8, ivec2(frame.size.xy) - 1 - origin);
     return all(lessThanEqual(box.low, box.high));
 }
 
@@ -22,17 +33,18 @@ struct Plane {
     float nearest, farthest;
 };
 
-Plane plane_through(vec3 a, vec3 b, vec3 c) {
-    const vec3 ab = b - a, ac = c - a;
-    const float area = ab.x * ac.y - ab.y * ac.x;
-    const vec2 slope = vec2(ab.z * ac.y - ab.y * ac.z, ab.x * ac.z - ab.z * ac.x) / area;
-    return Plane(a.xy, area == 0.0 ? vec2(0.0) : slope, a.z, min(max(max(a.z, b.z), c.z), 1.0),
-                 min(min(a.z, b.z), c.z));
+Plane plane_through(Vertex a, Vertex b, Vertex c) {
+    const vec3 ab = vec3(b.unsnapped - a.unsnapped, b.depth - a.depth);
+    const vec3 ac = vec3(c.unsnapped - a.unsnapped, c.depth - a.depth);
+    precise const float area = ab.x * ac.y - ab.y * ac.x;
+    precise const vec2 slope = vec2(ab.z * ac.y - ab.y * ac.z, ab.x * ac.z - ab.z * ac.x) / area;
+    return Plane(a.unsnapped, area == 0.0 ? vec2(0.0) : slope, a.depth,
+                 min(max(max(a.depth, b.depth), c.depth), 1.0), min(min(a.depth, b.depth), c.depth));
 }
 
 float depth_at(Plane plane, ivec2 pixel) {
     const vec2 from = vec2(pixel) - plane.reference;
-    const float depth = plane.depth + plane.slope.x * from.x + plane.slope.y * from.y;
+    precise const float depth = plane.depth + plane.slope.x * from.x + plane.slope.y * from.y;
     return clamp(depth, plane.farthest, plane.nearest);
 }
 
@@ -46,11 +58,11 @@ int edge_at(ivec2 from, ivec2 along, ivec2 pixel) {
 }
 
 // By one thread; the triangle's box has less than 128 pixels a side.
-void rasterize_small(uint eye, vec3 corner_a, vec3 corner_b, vec3 corner_c) {
-    const ivec2 a = snapped(corner_a);
-    ivec2 b = snapped(corner_b), c = snapped(corner_c);
+void rasterize_small(uint eye, ivec2 origin, Vertex vertex_a, Vertex vertex_b, Vertex vertex_c) {
+    const ivec2 a = vertex_a.pixel;
+    ivec2 b = vertex_b.pixel, c = vertex_c.pixel;
     Box box;
-    if (!find_box(a, b, c, box)) return;
+    if (!find_box(origin, a, b, c, box)) return;
     const ivec2 ab = b - a, ac = c - a;
     const int area = ab.x * ac.y - ab.y * ac.x;
     if (area == 0) return;
@@ -65,12 +77,12 @@ void rasterize_small(uint eye, vec3 corner_a, vec3 corner_b, vec3 corner_c) {
     const ivec3 step_y = 256 * ivec3(edge_a.x, edge_b.x, edge_c.x);
     ivec3 row = ivec3(edge_at(a, edge_a, box.low), edge_at(b, edge_b, box.low),
                       edge_at(c, edge_c, box.low));
-    const Plane plane = plane_through(corner_a, corner_b, corner_c);
+    const Plane plane = plane_through(vertex_a, vertex_b, vertex_c);
     for (int y = box.low.y; y <= box.high.y; ++y) {
         ivec3 edges = row;
         for (int x = box.low.x; x <= box.high.x; ++x) {
             if ((edges.x | edges.y | edges.z) >= 0)
-                write_pixel(eye, ivec2(x, y), depth_at(plane, ivec2(x, y)), front);
+                write_pixel(eye, origin + ivec2(x, y), depth_at(plane, origin + ivec2(x, y)), front);
             edges += step_x;
         }
         row += step_y;
@@ -94,12 +106,12 @@ bool is_inside(ivec2 from, ivec2 to, ivec2 pixel) {
 }
 
 // By several threads together; the triangle may have any size.
-void rasterize_large(uint eye, vec3 corner_a, vec3 corner_b, vec3 corner_c, uint thread,
+void rasterize_large(uint eye, Vertex vertex_a, Vertex vertex_b, Vertex vertex_c, uint thread,
                      uint threads) {
-    const ivec2 a = snapped(corner_a);
-    ivec2 b = snapped(corner_b), c = snapped(corner_c);
+    const ivec2 a = vertex_a.pixel;
+    ivec2 b = vertex_b.pixel, c = vertex_c.pixel;
     Box box;
-    if (!find_box(a, b, c, box)) return;
+    if (!find_box(ivec2(0), a, b, c, box)) return;
     const int area = cross_sign(b - a, c - a);
     if (area == 0) return;
     const bool front = area > 0;
@@ -108,7 +120,7 @@ void rasterize_large(uint eye, vec3 corner_a, vec3 corner_b, vec3 corner_c, uint
         b = c;
         c = swapped;
     }
-    const Plane plane = plane_through(corner_a, corner_b, corner_c);
+    const Plane plane = plane_through(vertex_a, vertex_b, vertex_c);
     const uvec2 sides = uvec2(box.high - box.low + 1);
     for (uint i = thread; i < sides.x * sides.y; i += threads) {
         const ivec2 pixel = box.low + ivec2(i % sides.x, i / sides.x);

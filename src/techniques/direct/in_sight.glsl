@@ -1,0 +1,73 @@
+// The occlusion test at its finest: a block is in sight if at some pixel its box begins before the
+// depth drawn there so far. A ray enters a box where it has entered all three pairs of parallel
+// faces, and leaves it where it leaves the first. Nearness, 1 / view depth (orthographic: less the
+// view depth), of a face's plane is an affine function of the pixel: two multiplications.
+#include "shaders/ray.glsl"
+
+const uint TEAM = 32;  // threads that look at a block together
+
+bool is_orthographic() { return frame.depth_range.z != 0.0; }
+
+// How far a cell reaches in view depth. A triangle seen edge-on may be drawn at the depth of any of
+// its corners, wherever it covers a pixel; all are in one cell.
+float cell_depth(uint eye) {
+    const mat4 m = frame.eyes[eye].clip_from_voxel;
+    const vec3 depth = is_orthographic() ? (frame.depth_range.y - frame.depth_range.x) *
+                                               vec3(m[0].z, m[1].z, m[2].z)
+                                         : vec3(m[0].w, m[1].w, m[2].w);
+    return abs(depth.x) + abs(depth.y) + abs(depth.z);
+}
+
+// The nearness of the plane where coordinate `axis` is `at`: a constant, and its growth along x and y
+// of normalized device coordinates. `sign`: of at - the eye's coordinate (orthographic: of the
+// direction).
+vec3 plane_nearness(uint eye, int axis, float at, float sign) {
+    const vec3 origin = vec3(frame.eyes[eye].ray_origin[axis], frame.eyes[eye].ray_origin_x[axis],
+                             frame.eyes[eye].ray_origin_y[axis]);
+    const vec3 direction =
+        vec3(frame.eyes[eye].ray_direction[axis], frame.eyes[eye].ray_direction_x[axis],
+             frame.eyes[eye].ray_direction_y[axis]);
+    if (is_orthographic())
+        return (origin - vec3(at, 0.0, 0.0)) / (sign * max(abs(direction.x), 1e-9));
+    return direction / (sign * max(abs(at - origin.x), 1e-6));
+}
+
+// True for at least one thread of the team if the block is in sight.
+bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
+    Extent extent;
+    project(eye, low, high, extent);
+    // Rasterizers round positions to a 256th of a pixel; this is a 32nd or more.
+    const vec2 sides = extent.greatest - extent.least;
+    low -= 0.5 / max(max(sides.x, sides.y), 1.0);
+    high += 0.5 / max(max(sides.x, sides.y), 1.0);
+    vec3 enter[3], leave[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const float origin = frame.eyes[eye].ray_origin[axis];
+        const bool low_first = is_orthographic() ? frame.eyes[eye].ray_direction[axis] > 0.0
+                                                 : origin < 0.5 * (low[axis] + high[axis]);
+        const float sign = low_first ? 1.0 : -1.0;
+        enter[axis] = plane_nearness(eye, axis, low_first ? low[axis] : high[axis], sign);
+        leave[axis] = plane_nearness(eye, axis, low_first ? high[axis] : low[axis], sign);
+        // Between the two faces the eye has entered already; it may leave through either.
+        if (!is_orthographic() && origin > low[axis] && origin < high[axis]) {
+            enter[axis] = vec3(1e9, 0.0, 0.0);
+            leave[axis] = vec3(-1e9, 0.0, 0.0);
+        }
+    }
+    const float slack = cell_depth(eye);
+    const ivec2 last = ivec2(frame.size.xy) - 1;
+    const ivec2 first_pixel = clamp(ivec2(floor(extent.least)), ivec2(0), last);
+    const ivec2 last_pixel = clamp(ivec2(floor(extent.greatest)), ivec2(0), last);
+    const uvec2 size = uvec2(last_pixel - first_pixel + 1);
+    for (uint i = thread; i < size.x * size.y; i += TEAM) {
+        const ivec2 pixel = first_pixel + ivec2(i % size.x, i / size.x);
+        const vec3 at = vec3(1.0, 2.0 * (vec2(pixel) + 0.5) / vec2(frame.size.xy) - 1.0);
+        const float entered = min(min(dot(enter[0], at), dot(enter[1], at)), dot(enter[2], at));
+        const float left = max(max(dot(leave[0], at), dot(leave[1], at)), dot(leave[2], at));
+        if (entered < left || (entered <= 0.0 && !is_orthographic())) continue;
+        const float t = max((is_orthographic() ? -entered : 1.0 / entered) - slack, frame.depth_range.x);
+        const float nearest = reversed_depth(t) * 1.00001 + 1e-7;
+        if (texelFetch(depth, ivec3(pixel, eye), 0).r <= nearest) return true;
+    }
+    return false;
+}
