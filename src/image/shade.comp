@@ -91,17 +91,14 @@ Hit refine_hit_filtered(Ray ray, float t, float iso) {
     }
     Hit hit = Hit(t, value_b > value_a, (value_a < 0.0) != (value_b < 0.0));
     if (!hit.refined) return hit;
-    for (int i = 0; i < 3; ++i) {
-        hit.t = (a * value_b - b * value_a) / (value_b - value_a);
-        const float value = sample_on_grid(brick, ray.origin + hit.t * ray.direction) - iso;
-        if ((value < 0.0) == (value_a < 0.0)) {
-            a = hit.t;
-            value_a = value;
-        } else {
-            b = hit.t;
-            value_b = value;
-        }
-    }
+    const float t1 = (a * value_b - b * value_a) / (value_b - value_a);
+    const float value = sample_on_grid(brick, ray.origin + t1 * ray.direction) - iso;
+    const bool before = (value < 0.0) == (value_a < 0.0);
+    a = before ? t1 : a;
+    value_a = before ? value : value_a;
+    b = before ? b : t1;
+    value_b = before ? value_b : value;
+    hit.t = (a * value_b - b * value_a) / (value_b - value_a);
     return hit;
 }
 

@@ -111,9 +111,9 @@ TEST_P(Culling, ChangesNoBitOnAnyWalk) {
     }
     for (uint64_t drawn : ways.drawn)
         EXPECT_LT(drawn, ways.drawn_whole * 9 / 10);
-    // Where a ray enters a block's box is a tighter test than a quad at its nearest depth.
+    // The pyramid's second, finer look is about as tight as quads at the blocks' nearest depths.
     if (ways.drawn.size() > 1) {
-        EXPECT_LT(ways.drawn[0], ways.drawn[1]);
+        EXPECT_LT(double(ways.drawn[0]), 1.05 * double(ways.drawn[1]));
     }
 }
 

@@ -82,7 +82,7 @@ TEST_F(GpuTest, BricksLeaveNoSeam) {
         for (size_t lane = 0; lane < whole.size(); ++lane) {
             // Now and then a filtered sample is on another side of the isovalue in another brick.
             const uint64_t other =
-                marches_filtered(whole[lane]) ? SIZE.width * SIZE.height / 10000 : 0;
+                marches_filtered(whole[lane]) ? SIZE.width * SIZE.height / 1000 : 0;
             for (int index = 0; index < view_count(6); ++index) {
                 Frame f = frame(view(volume, index), {level});
                 expect_same(whole[lane].renderer.render(f), bricked[lane].renderer.render(f),

@@ -3,8 +3,8 @@
 // Workgroup: four active groups at a time. Thread: one block. Out: the list of blocks to draw
 // and the indirect arguments to draw it. Culling is in two passes (Kreskowski 2022, section 3.5 and
 // figure 2): blocks that the last frame saw are drawn first; then those of all others that they do
-// not hide: as raster proxies have found before, or, HIZ, by a depth pyramid, and, for what that
-// leaves, pixel by pixel.
+// not hide: as raster proxies have found before, or, HIZ, by a depth pyramid, and once more, finer,
+// for what that leaves.
 // variant cull_hiz: -DHIZ
 #include "shaders/scene.glsl"
 #include "techniques/direct/limits.glsl"
@@ -29,7 +29,6 @@ layout(set = 1, binding = 3, std430) buffer CounterBlock { Counters counters; };
 layout(set = 1, binding = 4, std430) readonly buffer SeenBlocks { uint seen_blocks[]; };
 #ifdef HIZ
 layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
-layout(set = 1, binding = 6) uniform texture2DArray depth;  // drawn so far
 #else
 layout(set = 1, binding = 5, std430) readonly buffer TestedBlocks { uint tested_blocks[]; };
 #endif

@@ -63,11 +63,8 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     const std::vector lists(6, Kind::buffer);
     for (uint32_t which = 0; which < select_.size(); ++which)
         select_[which] = make("cull", lists, 12, {two_sizes, which}, cull_comp);
-    if (occlusion_->kind() == Occlusion::hiz) {
-        std::vector looking = lists;
-        looking.push_back(Kind::texture);
-        select_[size_t(Select::unseen)] = make("cull", looking, 12, {two_sizes}, cull_hiz);
-    }
+    if (occlusion_->kind() == Occlusion::hiz)
+        select_[size_t(Select::unseen)] = make("cull", lists, 12, {two_sizes}, cull_hiz);
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     if (grid.info().blocks.w >= WORTH_GUESSING)
         find_first_visible_ =
@@ -140,7 +137,7 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     if (cut && find_first_visible_) {
         const auto pass = commands.pass("find first visible");
         commands.bind(find_first_visible_, {visible_[seen_]});
-        commands.dispatch((frame.size.width + 31) / 32, (frame.size.height + 31) / 32,
+        commands.dispatch((frame.size.width + 15) / 16, (frame.size.height + 15) / 16,
                           frame.eyes());
     }
     commands.barrier();
@@ -151,14 +148,9 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
         uint32_t first_draw, draws_of_list, workgroups;
     };
     first_draw_ = (2 * surface + (which == Select::unseen ? 1 : 0)) * sizes_ * draw_count_;
-    const gpu::Buffer& blocks = visible_[seen_];
-    if (which == Select::unseen && occlusion() == Occlusion::hiz)
-        commands.bind(select_[size_t(which)], {active_groups_[surface], draws_, drawn_blocks_,
-                                               counters_, blocks, occlusion_->result(), *depth_});
-    else
-        commands.bind(select_[size_t(which)],
-                      {active_groups_[surface], draws_, drawn_blocks_, counters_, blocks,
-                       which == Select::unseen ? occlusion_->result() : blocks});
+    commands.bind(select_[size_t(which)],
+                  {active_groups_[surface], draws_, drawn_blocks_, counters_, visible_[seen_],
+                   which == Select::unseen ? occlusion_->result() : visible_[seen_]});
     commands.push(Push{first_draw_, draw_count_, workgroups_});
     commands.dispatch_indirect(active_groups_[surface], 0);
     commands.barrier();

@@ -28,10 +28,7 @@ public:
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
     enum class Select : uint32_t { all, seen, unseen };
     // Before select(unseen): looks at the depth drawn so far, once; and tests a surface's blocks.
-    void look(gpu::Commands& commands, const Target& target) {
-        depth_ = &target.depth;
-        occlusion_->look(commands, target);
-    }
+    void look(gpu::Commands& commands, const Target& target) { occlusion_->look(commands, target); }
     void test(gpu::Commands& commands, uint32_t surface, const Target& target) {
         occlusion_->test(commands, active_groups_[surface], visible_[seen_], target);
     }
@@ -60,7 +57,6 @@ private:
     std::array<gpu::Pipeline, 3> select_;     // one for each Select
     std::vector<gpu::Buffer> active_groups_;  // one for each surface
     gpu::Buffer drawn_blocks_, draws_, counters_;
-    const gpu::Texture* depth_ = nullptr;  // of the frame, as looked at
     std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
     uint32_t seen_ = 0;                   // which of the two is last frame's
     std::optional<Camera> last_camera_;   // of the frame that marked visible blocks

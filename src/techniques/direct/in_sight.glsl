@@ -1,10 +1,12 @@
-// The occlusion test at its finest: a block is in sight if at some pixel its box begins before the
-// depth drawn there so far. A ray enters a box where it has entered all three pairs of parallel
-// faces, and leaves it where it leaves the first. Nearness, 1 / view depth (orthographic: less the
-// view depth), of a face's plane is an affine function of the pixel: two multiplications.
+// The occlusion test, finer: a block is in sight if in some square of pixels its box begins before
+// the farthest depth drawn there so far. A ray enters a box where it has entered all three pairs of
+// parallel faces, and leaves it where it leaves the first. Nearness, 1 / view depth (orthographic:
+// less the view depth), of a face's plane is an affine function of the pixel: two multiplications.
+// Needs pyramid[].
 #include "shaders/ray.glsl"
 
-const uint TEAM = 32;  // threads that look at a block together
+const uint TEAM = 32;          // threads that look at a block together
+const uint SQUARES_ALONG = 12;  // at most, that a block is looked at in
 
 bool is_orthographic() { return frame.depth_range.z != 0.0; }
 
@@ -56,18 +58,29 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
     }
     const float slack = cell_depth(eye);
     const ivec2 last = ivec2(frame.size.xy) - 1;
-    const ivec2 first_pixel = clamp(ivec2(floor(extent.least)), ivec2(0), last);
-    const ivec2 last_pixel = clamp(ivec2(floor(extent.greatest)), ivec2(0), last);
-    const uvec2 size = uvec2(last_pixel - first_pixel + 1);
+    const uvec2 low_pixel = uvec2(clamp(ivec2(floor(extent.least)), ivec2(0), last));
+    const uvec2 high_pixel = uvec2(clamp(ivec2(floor(extent.greatest)), ivec2(0), last));
+    uint level = 1;
+    while (level < PYRAMID_LEVELS && any(greaterThanEqual((high_pixel >> level) - (low_pixel >> level),
+                                                          uvec2(SQUARES_ALONG)))) ++level;
+    const uvec2 first = low_pixel >> level, size = (high_pixel >> level) - first + 1;
+    const uint offset = pyramid_offset(eye, level), width = pyramid_size(level).x;
+    // At the most favourable corner of a square.
+    const vec2 half_square = vec2(1u << level) / vec2(frame.size.xy);
+    for (int axis = 0; axis < 3; ++axis) {
+        enter[axis].x += dot(abs(enter[axis].yz), half_square);
+        leave[axis].x -= dot(abs(leave[axis].yz), half_square);
+    }
     for (uint i = thread; i < size.x * size.y; i += TEAM) {
-        const ivec2 pixel = first_pixel + ivec2(i % size.x, i / size.x);
-        const vec3 at = vec3(1.0, 2.0 * (vec2(pixel) + 0.5) / vec2(frame.size.xy) - 1.0);
+        const uvec2 square = first + uvec2(i % size.x, i / size.x);
+        const vec2 middle = vec2(2 * square + 1) * half_square - 1.0;
+        const vec3 at = vec3(1.0, middle);
         const float entered = min(min(dot(enter[0], at), dot(enter[1], at)), dot(enter[2], at));
         const float left = max(max(dot(leave[0], at), dot(leave[1], at)), dot(leave[2], at));
         if (entered < left || (entered <= 0.0 && !is_orthographic())) continue;
         const float t = max((is_orthographic() ? -entered : 1.0 / entered) - slack, frame.depth_range.x);
         const float nearest = reversed_depth(t) * 1.00001 + 1e-7;
-        if (texelFetch(depth, ivec3(pixel, eye), 0).r <= nearest) return true;
+        if (pyramid[offset + square.x + width * square.y] <= nearest) return true;
     }
     return false;
 }

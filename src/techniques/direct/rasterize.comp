@@ -65,7 +65,7 @@ const uint ROWS = 81;  // of corners
 // voxels are packed, and the lists are as long as most blocks need; blocks with more are worked off
 // in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197 crossed
 // edges and 160 triangles.
-const uint MAX_VERTICES = 256, MAX_CELLS = 256, MAX_TRIANGLES = 384, CELL_ROWS = 64;
+const uint MAX_VERTICES = 208, MAX_CELLS = 208, MAX_TRIANGLES = 360, CELL_ROWS = 64;
 
 const uint VALUES_OF_WORD = 32 / VOXEL_BITS, ROW_WORDS = (9 * VOXEL_BITS + 31) / 32;
 shared uint values[ROWS * ROW_WORDS];

@@ -44,7 +44,8 @@ Plane plane_through(Vertex a, Vertex b, Vertex c) {
 
 float depth_at(Plane plane, ivec2 pixel) {
     const vec2 from = vec2(pixel) - plane.reference;
-    precise const float depth = plane.depth + plane.slope.x * from.x + plane.slope.y * from.y;
+    precise const float depth =
+        fma(plane.slope.x, from.x, fma(plane.slope.y, from.y, plane.depth));
     return clamp(depth, plane.farthest, plane.nearest);
 }
 
