@@ -301,14 +301,16 @@ def compare(options, volume):
 def main():
     parser = argparse.ArgumentParser(description="isorast against VTK on the CPU.")
     here = pathlib.Path(__file__).resolve().parents[1]
-    parser.add_argument("volumes", nargs="*", metavar="FILE[@ISOVALUE]", help="NAME_WxHxD_uint8.raw; default: a formula")
+    parser.add_argument("volumes", nargs="*", metavar="FILE[@ISOVALUE]",
+                        help="NAME_WxHxD_uint8.raw; default: a formula")
     parser.add_argument("--sizes", default="1280x720,3840x2160")
     parser.add_argument("--ways", default=WAYS, help="isorast's, as for isorast-bench")
     parser.add_argument("--side", type=int, default=256, help="of the formula's volume")
     parser.add_argument("--frames", type=int, default=20, help="of each case, even")
     parser.add_argument("--seconds", type=float, default=120, help="a VTK row that takes longer has fewer frames, "
                         f"at least {LEAST_FRAMES}")
-    parser.add_argument("--build", type=pathlib.Path, default=here / "build", help="where isorast and isorast-bench are")
+    parser.add_argument("--build", type=pathlib.Path, default=here / "build",
+                        help="where isorast and isorast-bench are")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=here / "out/vtk", metavar="FOLDER")
     options = parser.parse_args()
     start_display()

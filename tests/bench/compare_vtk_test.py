@@ -24,7 +24,8 @@ class Comparison(unittest.TestCase):
 
     def compare(self, *words, code=0):
         done = subprocess.run([sys.executable, SCRIPT, "--side", "64", "--sizes", "320x180", "--frames", "4",
-                               "--ways", ",".join(WAYS), "-o", self.folder, *words], capture_output=True, text=True, timeout=200)
+                               "--ways", ",".join(WAYS), "-o", self.folder, *words],
+                              capture_output=True, text=True, timeout=200)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done.stdout, done.stderr
 
