@@ -10,6 +10,7 @@
 #include <isorast/error.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 
@@ -35,6 +36,8 @@ void add_options(CLI::App& app, Settings& settings) {
                    "e.g. 'direct hardware,raymarch compute exact'; else all that the device can do")
         ->delimiter(',');
     app.add_option("--sizes", settings.sizes, "e.g. 1280x720,3840x2160")->delimiter(',');
+    app.add_option("--sequences", settings.sequences, "only those, e.g. sweep or orbit; else all")
+        ->delimiter(',');
     app.add_option("--frames", settings.frames, "counted ones for each row, in two rounds");
     app.add_option("--warm-up", settings.warm_up, "frames before, not counted");
     app.add_option("--warm-up-ms", settings.warm_up_ms, "and at least so long");
@@ -46,6 +49,8 @@ void add_options(CLI::App& app, Settings& settings) {
     app.add_option("--azimuth", settings.azimuth);
     app.add_option("--elevation", settings.elevation);
     app.add_option("--zoom", settings.zoom);
+    app.add_flag("--shots", settings.shots,
+                 "write each frame's camera and isovalues, too, for others to draw the same");
     app.add_flag("--quick", settings.quick, "small volumes and pictures, few frames");
     app.add_option("--device", settings.device, "as for isorast render");
     app.add_option("-o,--output", settings.output, "JSON file");
@@ -77,10 +82,36 @@ Json head_of(const Settings& settings, const Gpu& gpu, int argc, char** argv) {
             {"rows", Json::array()}};
 }
 
+// What is drawn, frame by frame: bench/compare_vtk.py has VTK draw the same.
+void add_shots(const Subject& subject, const std::vector<Sequence>& sequences, Json& report) {
+    for (const Sequence& sequence : sequences) {
+        Json shots = Json::array();
+        for (const auto& [frame, row] : sequence.shots)
+            shots.push_back({{"isovalues", frame.isovalues},
+                             {"position", frame.camera.position},
+                             {"target", frame.camera.target},
+                             {"up", frame.camera.up},
+                             {"fov_degrees", frame.camera.fov_degrees}});
+        const Size size = sequence.shots.front().frame.size;
+        report["shots"].push_back({{"volume", subject.name},
+                                   {"sequence", sequence.name},
+                                   {"width", size.width},
+                                   {"height", size.height},
+                                   {"frames", shots}});
+    }
+}
+
 void measure(Gpu& gpu, const Scenario& scenario, const Settings& settings, const Subject& subject,
              Json& report) {
     Contest contest(gpu, subject, settings, report);
-    if (!contest.empty()) contest.measure(scenario.sequences(contest, subject, settings));
+    if (contest.empty()) return;
+    std::vector<Sequence> sequences = scenario.sequences(contest, subject, settings);
+    std::erase_if(sequences, [&](const Sequence& sequence) {
+        return !settings.sequences.empty() &&
+               !std::ranges::count(settings.sequences, sequence.name);
+    });
+    if (settings.shots) add_shots(subject, sequences, report);
+    contest.measure(sequences);
 }
 
 void write(const Json& report, const std::string& path) {

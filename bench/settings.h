@@ -13,14 +13,14 @@ using Json = nlohmann::ordered_json;
 struct Settings {
     std::string scenario;
     std::vector<std::string> volumes, ways;
-    std::vector<std::string> sizes;
+    std::vector<std::string> sizes, sequences;
     uint32_t frames = 0;  // counted ones for each row of the results, in two rounds
     uint32_t warm_up = 10;
     double warm_up_ms = 200;
     std::vector<double> sweep{0.2, 0.9, 29};  // first, last, how many; shares of the value range
     std::vector<double> degrees{0.25, 1, 4};  // a frame, of the orbits
     double azimuth = 30, elevation = 20, zoom = 1;
-    bool quick = false;
+    bool quick = false, shots = false;
     std::string device, output;
 };
 

@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 BUILD_PACKAGES=(g++ cmake ninja-build libvulkan-dev glslang-tools libglm-dev libcli11-dev libfmt-dev
     nlohmann-json3-dev libmeshoptimizer-dev libnifti-dev libpng-dev zlib1g-dev)
 TEST_PACKAGES=(libgtest-dev vulkan-validationlayers spirv-tools libinsighttoolkit5-dev python3-nibabel
-    python3-numpy python3-vtk9 admesh clang-format-19 clang-tidy-19)
+    python3-numpy python3-vtk9 xvfb admesh clang-format-19 clang-tidy-19)
 OLDEST_MESA=24  # the first whose lavapipe has VK_EXT_mesh_shader
 CACHE=$PWD/.cache
 

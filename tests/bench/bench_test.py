@@ -184,10 +184,27 @@ class Choices(Bench):
         self.assertEqual({skip["way"] for skip in report["skipped"]}, {"raymarch compute forward", "nonsense"})
         self.assertIn("left out: nonsense", out)
 
+    def test_shots_of_chosen_sequences(self):
+        report, _ = self.measured_now("isovalue-sweep", *SCENARIOS["isovalue-sweep"], "--sequences", "sweep", "--shots")
+        self.assertEqual({row["sequence"] for row in report["rows"]}, {"sweep"})
+        [shots] = report["shots"]
+        self.assertEqual((shots["sequence"], shots["width"], shots["height"]), ("sweep", 64, 36))
+        isovalues = [shot["isovalues"][0] for shot in shots["frames"]]
+        self.assertLess(isovalues[0], isovalues[1])
+        self.assertEqual(isovalues, isovalues[::-1])  # up and down again
+        for shot in shots["frames"]:
+            self.assertAlmostEqual(shot["fov_degrees"], 30)
+            self.assertNotEqual(shot["position"], shot["target"])
+        report, _ = self.measured_now("motion", *HEAD, *SIZE, "--sequences", "orbit", "--degrees", "4", "--shots")
+        [shots] = report["shots"]
+        self.assertNotEqual(shots["frames"][0]["position"], shots["frames"][1]["position"])
+        self.assertEqual(shots["frames"][0]["target"], shots["frames"][1]["target"])
+
     def test_errors_are_one_line(self):
         for words, what in ([["nothing"], "expected one of frames, resolution"],
                             [["frames", "--ways", "direct sideways"], "found 'sideways'"],
                             [["frames", *HEAD, "--sizes", "64"], "WIDTHxHEIGHT"],
+                            [["frames", *HEAD, *SIZE, "--sequences", "no"], "nothing could be measured"],
                             [["frames", "--volumes", "ball.raw"], "ball.raw: expected a formula"],
                             [["frames", "--volumes", "a_9x9x9_uint8.raw"], "a_9x9x9_uint8.raw"],
                             [["frames", *HEAD, "-o", "no/such/folder.json"], "cannot be written"]):
