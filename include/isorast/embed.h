@@ -40,6 +40,16 @@ struct RecordedFrame {
         VK_NULL_HANDLE;  // reversed: 1 at the near plane, 0 at the far plane and where nothing is
     VkImageView depth_view = VK_NULL_HANDLE;
     VkFormat depth_format = VK_FORMAT_UNDEFINED;
+    // Only with DepthCopies::buffer: the same depth as floats, row after row, the right eye's
+    // behind the left eye's; a storage buffer and a transfer source.
+    VkBuffer depth_buffer = VK_NULL_HANDLE;
+};
+
+// For hosts that need the depth in one form, whatever rasterizer drew it: the hardware rasterizers
+// leave a D32_SFLOAT image, those in compute an R32_SFLOAT image.
+struct DepthCopies {
+    bool image = false;   // RecordedFrame::depth is D32_SFLOAT always; needs a queue with graphics
+    bool buffer = false;  // RecordedFrame::depth_buffer
 };
 
 // Records one frame into `commands`, outside a render pass. `slot`, below
@@ -52,6 +62,6 @@ struct RecordedFrame {
 // submissions to HostDevice::queue. So does the technique meshlets with new isovalues or a new time
 // step, and waits: frames recorded before must have been submitted then.
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,
-                     uint32_t slot);
+                     uint32_t slot, const DepthCopies& copies = {});
 
 }  // namespace isorast

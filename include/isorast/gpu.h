@@ -18,7 +18,7 @@ struct DeviceInfo {
     std::string api_version;
     uint32_t subgroup_size = 0;
     bool subgroup_sums = false;  // compute shaders can add across a subgroup
-    uint64_t memory_bytes = 0;  // of the largest device-local heap
+    uint64_t memory_bytes = 0;   // of the largest device-local heap
     uint64_t max_allocation_bytes = 0;
     uint32_t max_image_side = 0;  // voxels along one side of a 3D image
     // Empty when the device can; else why it cannot, in a few words.

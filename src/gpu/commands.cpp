@@ -140,6 +140,13 @@ void Commands::copy_to_buffer(const Texture& from, const Buffer& to) {
                            &region);
 }
 
+void Commands::copy_to_image(const Buffer& from, const Texture& to) {
+    const VkBufferImageCopy region{.imageSubresource = {to.aspect(), 0, 0, to.layers()},
+                                   .imageExtent = to.extent()};
+    vkCmdCopyBufferToImage(commands_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_GENERAL, 1,
+                           &region);
+}
+
 VkDescriptorSet Commands::allocate_set(VkDescriptorSetLayout layout) {
     const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                            .descriptorPool = slot_.pool_,

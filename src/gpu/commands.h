@@ -81,6 +81,7 @@ public:
     void clear(const Texture& texture, const VkClearColorValue& color);  // not a depth image
     // All layers, one after the other, tightly packed.
     void copy_to_buffer(const Texture& from, const Buffer& to);
+    void copy_to_image(const Buffer& from, const Texture& to);  // the way back
 
     void set_scene(VkDescriptorSet scene) { scene_ = scene; }
     VkDescriptorSet allocate_set(VkDescriptorSetLayout layout);

@@ -164,9 +164,10 @@ std::string key_of(const Gpu& gpu, bool hardware) {
     const DeviceInfo& info = gpu.info();
     return fmt::format("isorast {}, {}, {}, Vulkan {}, subgroup {}, {}", ISORAST_VERSION, info.name,
                        info.driver, info.api_version, info.subgroup_size,
-                       !hardware                                  ? "no mesh shaders"
-                       : gpu.device().features().fragment_stores ? "mesh shaders"
-                                                                  : "mesh shaders, no raster proxies");
+                       !hardware ? "no mesh shaders"
+                       : gpu.device().features().fragment_stores
+                           ? "mesh shaders"
+                           : "mesh shaders, no raster proxies");
 }
 
 // Empty: nowhere.

@@ -152,21 +152,55 @@ std::vector<std::vector<gpu::TimedPass>> Renderer::State::run(const std::vector<
     return times;
 }
 
+// Into depth_buffer_; from there into a D32 image, as no command turns one format into the other.
+void Renderer::State::copy_depth(gpu::Commands& commands, bool as_image) {
+    const VkExtent3D extent = target_.depth.extent();
+    const uint32_t layers = target_.depth.layers();
+    const uint64_t bytes = uint64_t{4} * extent.width * extent.height * layers;
+    if (depth_buffer_.bytes() != bytes)
+        depth_buffer_ =
+            gpu::Buffer(device_, bytes, gpu::Buffer::Memory::device, "a copy of the depth");
+    commands.copy_to_buffer(target_.depth, depth_buffer_);
+    commands.barrier();
+    if (!as_image) return;
+    const VkExtent3D old = depth_image_ ? depth_image_.extent() : VkExtent3D{};
+    if (old.width != extent.width || old.height != extent.height ||
+        depth_image_.layers() != layers) {
+        depth_image_ = gpu::Texture(
+            device_,
+            {.format = VK_FORMAT_D32_SFLOAT,
+             .extent = extent,
+             .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                      VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+             .layers = layers},
+            "a copy of the depth");
+        commands.discard_to_general(depth_image_);
+    }
+    commands.copy_to_image(depth_buffer_, depth_image_);
+    commands.barrier();
+}
+
 RecordedFrame Renderer::State::record_for_host(VkCommandBuffer handle, const Frame& frame,
-                                               uint32_t slot) {
+                                               uint32_t slot, const DepthCopies& copies) {
     if (slot >= submissions_.size())
         throw Error(fmt::format("record: expected a slot below {} (frames_in_flight), found {}",
                                 submissions_.size(), slot));
+    if (copies.image && !device_.has_graphics())
+        throw Error("record: depth as a D32 image needs a queue with graphics; take the buffer");
     while (host_slots_.size() <= slot)
         host_slots_.push_back(std::make_unique<gpu::Slot>(device_));
     host_slots_[slot]->reset();
     gpu::Commands commands(device_, handle, *host_slots_[slot]);
     record(commands, frame, host_steps_in_flight_[slot]);
+    const bool as_image = copies.image && target_.depth.format() != VK_FORMAT_D32_SFLOAT;
+    if (as_image || copies.buffer) copy_depth(commands, as_image);
     const auto view = [&](const gpu::Texture& texture) {
         return target_.eyes == 1 ? texture.layer_view(0) : texture.view();
     };
-    return {target_.color.handle(), view(target_.color), target_.depth.handle(),
-            view(target_.depth), target_.depth.format()};
+    const gpu::Texture& depth = as_image ? depth_image_ : target_.depth;
+    return {target_.color.handle(), view(target_.color),
+            depth.handle(),         view(depth),
+            depth.format(),         copies.buffer ? depth_buffer_.handle() : VK_NULL_HANDLE};
 }
 
 void Renderer::State::fit_readback(const Frame& frame) {
@@ -248,8 +282,8 @@ Occlusion Renderer::occlusion() const {
 }
 
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,
-                     uint32_t slot) {
-    return renderer.state().record_for_host(commands, frame, slot);
+                     uint32_t slot, const DepthCopies& copies) {
+    return renderer.state().record_for_host(commands, frame, slot, copies);
 }
 
 std::vector<std::string> techniques() {

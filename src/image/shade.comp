@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Workgroup: 16x16 pixels of one eye. Thread: four of them, whose depths it fetches at once. Out: their
-// colour and distance, from the technique's depth: unproject, move the hit onto the trilinear
-// surface, take the gradient, shade. One pass for all techniques.
+// Workgroup: 16x16 pixels of one eye. Thread: four of them, whose depths it fetches at once. Out:
+// their colour and distance, from the technique's depth: unproject, move the hit onto the
+// trilinear surface, take the gradient, shade. One pass for all techniques.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
@@ -86,8 +86,9 @@ Hit refine_hit_filtered(Ray ray, float t, float iso) {
     for (int i = 1; i <= 2 && (value_a < 0.0) == (value_b < 0.0); ++i) {
         a = t - 0.5 * float(i) * voxel_step;
         b = t + 0.5 * float(i) * voxel_step;
-        value_a = sample_on_grid(brick, clamp(ray.origin + a * ray.direction, vec3(0.0), last)) - iso;
-        value_b = sample_on_grid(brick, clamp(ray.origin + b * ray.direction, vec3(0.0), last)) - iso;
+        const vec3 at_a = ray.origin + a * ray.direction, at_b = ray.origin + b * ray.direction;
+        value_a = sample_on_grid(brick, clamp(at_a, vec3(0.0), last)) - iso;
+        value_b = sample_on_grid(brick, clamp(at_b, vec3(0.0), last)) - iso;
     }
     Hit hit = Hit(t, value_b > value_a, (value_a < 0.0) != (value_b < 0.0));
     if (!hit.refined) return hit;

@@ -19,7 +19,8 @@ const gpu::Pipeline& Shade::pipeline(bool color, bool distance, bool mark) {
         const std::vector bindings{Kind::texture, Kind::texture, Kind::image, Kind::image,
                                    Kind::buffer};
         pipeline = gpu::Pipeline::compute(
-            grid_.device(), grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, filtered_}),
+            grid_.device(),
+            grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, filtered_}),
             grid_.pick(shade_comp, shade_comp_bricked));
     }
     return pipeline;

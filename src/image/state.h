@@ -25,7 +25,8 @@ public:
     ~State();
 
     Image render(const Frame& frame);
-    RecordedFrame record_for_host(VkCommandBuffer commands, const Frame& frame, uint32_t slot);
+    RecordedFrame record_for_host(VkCommandBuffer commands, const Frame& frame, uint32_t slot,
+                                  const DepthCopies& copies);
     // Submits frames without reading them back, several in flight; their passes' times, in order.
     std::vector<std::vector<gpu::TimedPass>> run(const std::vector<Frame>& frames);
 
@@ -38,6 +39,7 @@ private:
     // One frame into these commands; `step` keeps its time step while it may be in flight.
     void record(gpu::Commands& commands, const Frame& frame, std::optional<uint32_t>& step);
     void record_passes(gpu::Commands& commands, const Frame& frame);
+    void copy_depth(gpu::Commands& commands, bool as_image);
     Image read_back(const Frame& frame) const;
     void fit_readback(const Frame& frame);
     void collect_stats(const gpu::Slot& slot);
@@ -55,6 +57,8 @@ private:
     std::vector<std::unique_ptr<gpu::Submission>> submissions_;
     std::vector<std::unique_ptr<gpu::Slot>> host_slots_;
     std::vector<std::optional<uint32_t>> steps_in_flight_, host_steps_in_flight_;  // one for each
+    gpu::Texture depth_image_;                                                     // DepthCopies
+    gpu::Buffer depth_buffer_;
     gpu::Buffer color_readback_, depth_readback_, counters_readback_;
     FrameStats stats_;
 };

@@ -20,8 +20,8 @@ struct Extent {
     float nearest;
 };
 
-// A point. Rounding must not make the extent too small: it is a 64th of a pixel wider and 1e-5 nearer
-// (rasterizers round positions to a 256th). False before the near plane.
+// A point. Rounding must not make the extent too small: it is a 64th of a pixel wider and 1e-5
+// nearer (rasterizers round positions to a 256th). False before the near plane.
 bool project(uint eye, vec3 point, out Extent extent) {
     const vec4 clip = frame.eyes[eye].clip_from_voxel * vec4(point, 1.0);
     const vec2 pixel = (0.5 + 0.5 * clip.xy / clip.w) * vec2(frame.size.xy);

@@ -131,7 +131,8 @@ vec3 field_gradient(vec3 p) {
             const float before = max(voxel(brick, position), least);
             position[axis] = high[axis];
             const float after = max(voxel(brick, position), least);
-            const float weight = (side.x == 0 ? 1.0 - f[u] : f[u]) * (side.y == 0 ? 1.0 - f[v] : f[v]);
+            const vec2 share = mix(1.0 - vec2(f[u], f[v]), vec2(f[u], f[v]), vec2(side));
+            const float weight = share.x * share.y;
             gradient[axis] +=
                 weight * mix((corners[upper] - before) * scale_low[axis],
                              (after - corners[lower]) * scale_high[axis], f[axis]);
@@ -142,13 +143,16 @@ vec3 field_gradient(vec3 p) {
 
 // Through the sampler, at the nearest point of the grid of 1/256 voxels that texture units filter
 // on: the same in every brick.
-float sample_on_grid(Brick brick, vec3 p) { return sample_filtered(brick, round(p * 256.0) / 256.0); }
+float sample_on_grid(Brick brick, vec3 p) {
+    return sample_filtered(brick, round(p * 256.0) / 256.0);
+}
 
-// The gradient by six such samples in place of 32 voxels. For 8-bit voxels only: of 16-bit ones GPUs
-// return no finer differences than whole steps, and floats may not be finite.
+// The gradient by six such samples in place of 32 voxels. For 8-bit voxels only: of 16-bit ones
+// GPUs return no finer differences than whole steps, and floats may not be finite.
 vec3 field_gradient_filtered(vec3 p) {
     const Brick brick = brick_of(cell_of(p));
-    const vec3 last = vec3(grid.voxels.xyz) - 1.0, above = min(p + 1.0, last), below = max(p - 1.0, 0.0);
+    const vec3 last = vec3(grid.voxels.xyz) - 1.0;
+    const vec3 above = min(p + 1.0, last), below = max(p - 1.0, 0.0);
     vec3 gradient;
     for (int axis = 0; axis < 3; ++axis) {
         vec3 low = p, high = p;

@@ -3,7 +3,9 @@
 // them, two in flight, and gets the picture that render() makes.
 #include <isorast/embed.h>
 
+#include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "gpu/commands.h"
 #include "gpu/device.h"
@@ -57,6 +59,44 @@ TEST_F(GpuTest, AHostRecordsFramesIntoItsOwnCommands) {
                 << lane.name;
         }
         EXPECT_THROW(record(embedded, VK_NULL_HANDLE, f, 2), Error);
+    }
+}
+
+// In one form for all: a D32 image, and a buffer.
+TEST_F(GpuTest, AHostGetsTheDepthAsItWants) {
+    if (GRAPHICS_CRASHES) GTEST_SKIP();
+    Gpu adopted(host_of(gpu.device()));
+    const Volume volume = reference::sampled("torus:48:type=u8");
+    for (Lane& lane : lanes(volume)) {
+        Renderer embedded(adopted, volume, lane.options);
+        Frame f = frame(reference::view(volume, 1), {0.0});
+        const uint64_t bytes = uint64_t{4} * SIZE.width * SIZE.height;
+        const gpu::Buffer drawn(gpu.device(), bytes, gpu::Buffer::Memory::host, "a test");
+        const gpu::Buffer image(gpu.device(), bytes, gpu::Buffer::Memory::host, "a test");
+        const gpu::Buffer buffer(gpu.device(), bytes, gpu::Buffer::Memory::host, "a test");
+        for (const bool copied : {false, true}) {
+            gpu::Submission submission(gpu.device());
+            const VkCommandBuffer commands = submission.begin().handle();
+            const RecordedFrame recorded =
+                record(embedded, commands, f, 0, {.image = copied, .buffer = copied});
+            const bool as_depth = recorded.depth_format == VK_FORMAT_D32_SFLOAT;
+            EXPECT_TRUE(as_depth || !copied) << lane.name;
+            EXPECT_EQ(recorded.depth_buffer != VK_NULL_HANDLE, copied) << lane.name;
+            const VkImageAspectFlags aspect =
+                as_depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+            const VkBufferImageCopy region{.imageSubresource = {aspect, 0, 0, 1},
+                                           .imageExtent = {SIZE.width, SIZE.height, 1}};
+            vkCmdCopyImageToBuffer(commands, recorded.depth, VK_IMAGE_LAYOUT_GENERAL,
+                                   (copied ? image : drawn).handle(), 1, &region);
+            const VkBufferCopy all{0, 0, bytes};
+            if (copied) vkCmdCopyBuffer(commands, recorded.depth_buffer, buffer.handle(), 1, &all);
+            submission.submit();
+            submission.wait();
+        }
+        const std::span depths(drawn.data<float>(), bytes / 4);
+        EXPECT_GT(std::ranges::count_if(depths, [](float depth) { return depth > 0; }), 1000);
+        EXPECT_EQ(std::memcmp(image.data<float>(), drawn.data<float>(), bytes), 0) << lane.name;
+        EXPECT_EQ(std::memcmp(buffer.data<float>(), drawn.data<float>(), bytes), 0) << lane.name;
     }
 }
 

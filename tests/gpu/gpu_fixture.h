@@ -77,8 +77,8 @@ protected:
         return result;
     }
 
-    // GPUs filter voxels with weights of 1/256, and 16-bit ones to whole steps: raymarch (unless exact)
-    // and the shading of 8-bit voxels sample through that filter, and are only as exact.
+    // GPUs filter voxels with weights of 1/256, and 16-bit ones to whole steps: raymarch (unless
+    // exact) and the shading of 8-bit voxels sample through that filter, and are only as exact.
     bool filters() const { return !gpu.device().is_cpu(); }
     bool marches_filtered(const Lane& lane) const {
         return filters() && lane.options.technique == "raymarch" && !lane.options.exact;

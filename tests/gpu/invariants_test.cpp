@@ -187,7 +187,9 @@ TEST_F(GpuTest, VoxelTypesAreTheSameField) {
                                     picture(expected[lane].renderer.render(f)), 4);
             std::string what = fmt::format("{} {}", all[lane].name, name_of(volume.type));
             EXPECT_GE(a.overlap, marches_filtered(all[lane]) ? 0.99 : 0.9998) << what;
-            EXPECT_LE(a.depth_rms, marches_filtered(all[lane]) ? 0.02 : filters() ? 0.005 : 1e-3)
+            EXPECT_LE(a.depth_rms, marches_filtered(all[lane]) ? 0.02
+                                   : filters()                 ? 0.005
+                                                               : 1e-3)
                 << what;
             EXPECT_LE(a.normal_degrees, filters() ? 0.5 : 0.2) << what;
             EXPECT_EQ(a.holes, 0u) << what;

@@ -62,8 +62,8 @@ public:
             culling_.select(commands, 0, Culling::Select::all);
             for (const auto size : {Culling::Size::small, Culling::Size::large}) {
                 const uint32_t draw = culling_.first_draw(size);
-                commands.bind(pipelines_[size_t(size)],
-                              {culling_.draws(), culling_.drawn_blocks(), table_, counts_, counts_});
+                commands.bind(pipelines_[size_t(size)], {culling_.draws(), culling_.drawn_blocks(),
+                                                         table_, counts_, counts_});
                 commands.push(std::array<uint32_t, 3>{0, 0, draw});
                 commands.dispatch_indirect(culling_.draws(), draw * sizeof(shared::Draw));
             }

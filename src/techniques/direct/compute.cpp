@@ -33,9 +33,9 @@ public:
     explicit ComputeRasterizer(const Grid& grid)
         : grid_(grid),
           triangle_table_(upload_triangle_table(grid.device())),
-          clear_(gpu::Pipeline::compute(
-              grid.device(), grid.pipeline_info("clear depth", {Kind::image}, 0),
-              clear_depth_comp)) {}
+          clear_(gpu::Pipeline::compute(grid.device(),
+                                        grid.pipeline_info("clear depth", {Kind::image}, 0),
+                                        clear_depth_comp)) {}
 
     void clear(Commands& commands, const Frame&, const Target& target) const override {
         commands.bind(clear_, {gpu::Binding(target.depth.bits_view())});
@@ -111,8 +111,8 @@ gpu::Buffer upload_triangle_table(const gpu::Device& device) {
     for (uint32_t cell_case = 0; cell_case < 256; ++cell_case) {
         const uint32_t count = cases.triangle_count(cell_case);
         for (uint32_t corner = 0; corner < 3 * count; ++corner)
-            table[MOST * cell_case + corner / 3] |=
-                place_of_edge(cases.edge(cell_case, corner)) << 9 * (corner % 3);
+            table[MOST * cell_case + corner / 3] |= place_of_edge(cases.edge(cell_case, corner))
+                                                    << 9 * (corner % 3);
         table[MOST * cell_case] |= count << 29;
     }
     gpu::Buffer buffer(device, sizeof(table), gpu::Buffer::Memory::device, "marching cubes");

@@ -56,8 +56,8 @@ shared uint candidates[CULL_GROUPS * GROUP_BLOCKS];  // group << 5 | place
 shared uint candidate_total;
 #endif
 
-// True if an eye may see the block. `seen`: in the last frame, or by the raster proxies. `look`: only
-// if a closer look finds it in sight.
+// True if an eye may see the block. `seen`: in the last frame, or by the raster proxies. `look`:
+// only if a closer look finds it in sight.
 bool is_selected(uvec3 block, bool seen, out bool large, out bool look) {
     large = look = false;
     if (SELECT != ALL && seen != (SELECT == SEEN || SELECT == TESTED)) return false;

@@ -1,5 +1,5 @@
-// The list of drawn blocks, and what a workgroup of a draw is to extract. Workgroups along x and y: a
-// quartet; along z: the n-th of its drawn blocks. Blocks that are large in the picture are listed
+// The list of drawn blocks, and what a workgroup of a draw is to extract. Workgroups along x and y:
+// a quartet; along z: the n-th of its drawn blocks. Blocks that are large in the picture are listed
 // from the list's end backwards: define LARGE to draw those.
 
 layout(set = 1, binding = 0, std430) readonly buffer Draws { Draw draws[]; };

@@ -79,7 +79,7 @@ private:
     const gpu::Pipeline& pipeline(const Frame& frame);
 
     const Grid& grid_;
-    gpu::Buffer cases_;  // marching cubes: 256 x uvec2
+    gpu::Buffer cases_;                        // marching cubes: 256 x uvec2
     std::array<gpu::Pipeline, 12> pipelines_;  // made when first needed
 };
 
@@ -116,8 +116,9 @@ const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
     if (colors != Colors::none || clipped)
         shaders.push_back(
             {VK_SHADER_STAGE_FRAGMENT_BIT, (stereo ? stereo_fragment : fragment)[size_t(colors)]});
-    const auto info = grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer, Kind::buffer},
-                                          sizeof(Push), {clipped});
+    const auto info =
+        grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer, Kind::buffer},
+                            sizeof(Push), {clipped});
     pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders,
                                        {color_formats(colors), VK_FORMAT_D32_SFLOAT});
     return pipeline;

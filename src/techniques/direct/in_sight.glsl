@@ -20,8 +20,8 @@ float cell_depth(uint eye) {
     return abs(depth.x) + abs(depth.y) + abs(depth.z);
 }
 
-// The nearness of the plane where coordinate `axis` is `at`: a constant, and its growth along x and y
-// of normalized device coordinates. `sign`: of at - the eye's coordinate (orthographic: of the
+// The nearness of the plane where coordinate `axis` is `at`: a constant, and its growth along x and
+// y of normalized device coordinates. `sign`: of at - the eye's coordinate (orthographic: of the
 // direction).
 vec3 plane_nearness(uint eye, int axis, float at, float sign) {
     const vec3 origin = vec3(frame.eyes[eye].ray_origin[axis], frame.eyes[eye].ray_origin_x[axis],
@@ -61,8 +61,8 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
     const uvec2 low_pixel = uvec2(clamp(ivec2(floor(extent.least)), ivec2(0), last));
     const uvec2 high_pixel = uvec2(clamp(ivec2(floor(extent.greatest)), ivec2(0), last));
     uint level = 1;
-    while (level < PYRAMID_LEVELS && any(greaterThanEqual((high_pixel >> level) - (low_pixel >> level),
-                                                          uvec2(SQUARES_ALONG)))) ++level;
+    while (level < PYRAMID_LEVELS && any(greaterThanEqual(
+               (high_pixel >> level) - (low_pixel >> level), uvec2(SQUARES_ALONG)))) ++level;
     const uvec2 first = low_pixel >> level, size = (high_pixel >> level) - first + 1;
     const uint offset = pyramid_offset(eye, level), width = pyramid_size(level).x;
     // At the most favourable corner of a square.
@@ -78,8 +78,8 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
         const float entered = min(min(dot(enter[0], at), dot(enter[1], at)), dot(enter[2], at));
         const float left = max(max(dot(leave[0], at), dot(leave[1], at)), dot(leave[2], at));
         if (entered < left || (entered <= 0.0 && !is_orthographic())) continue;
-        const float t = max((is_orthographic() ? -entered : 1.0 / entered) - slack, frame.depth_range.x);
-        const float nearest = reversed_depth(t) * 1.00001 + 1e-7;
+        const float t = (is_orthographic() ? -entered : 1.0 / entered) - slack;
+        const float nearest = reversed_depth(max(t, frame.depth_range.x)) * 1.00001 + 1e-7;
         if (pyramid[offset + square.x + width * square.y] <= nearest) return true;
     }
     return false;

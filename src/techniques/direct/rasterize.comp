@@ -12,10 +12,10 @@
 // variant rasterize_large: -DLARGE
 // variant rasterize_large_numbered: -DLARGE -DNUMBERED
 // variant rasterize_large_counting: -DLARGE -DCOUNTING
-// Workgroup: one block of 8^3 cells. Thread: voxels, then rows, then cells, then vertices, then
-// triangles; LARGE, for blocks that are large in the picture: pixels. Out: the depth of the surface's
-// triangles there. Extraction and rasterization in one compute shader: no mesh shaders, no graphics
-// queue.
+// Workgroup: one block of 8^3 cells. Thread: rows of voxels, then of cells, then cells, then
+// vertices, then triangles; LARGE, for blocks that are large in the picture: pixels. Out: the depth
+// of the surface's triangles there. Extraction and rasterization in one compute shader: no mesh
+// shaders, no graphics queue.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
@@ -118,7 +118,8 @@ void load_rows(uvec3 first, float iso) {
 float value_at(uint row, uint x) {
     const uint word = values[ROW_WORDS * row + x / VALUES_OF_WORD];
     if (VOXEL_BITS == 32) return uintBitsToFloat(word);
-    return float(bitfieldExtract(word, int(VOXEL_BITS % 32 * (x % VALUES_OF_WORD)), int(VOXEL_BITS)));
+    const uint place = x % VALUES_OF_WORD;
+    return float(bitfieldExtract(word, int(VOXEL_BITS % 32 * place), int(VOXEL_BITS)));
 }
 
 // The corner rows of a cell row, which begins at this one.
@@ -199,7 +200,8 @@ struct Listed {
 };
 Listed listed(uint i) {
     const uint cell = triangles[i] & 511u;
-    return Listed(corner_row(cell >> 3 & 7u, cell >> 6), cell & 7u, triangle_table[triangles[i] >> 9]);
+    return Listed(corner_row(cell >> 3 & 7u, cell >> 6), cell & 7u,
+                  triangle_table[triangles[i] >> 9]);
 }
 
 // Clip space: the one place where voxels meet the camera.
@@ -209,8 +211,8 @@ vec4 vertex_on(uint eye, uint edge, uvec3 first, float iso) {
     const float lower = value_at(row, corner.x);
     const float upper = value_at(row + (axis == 1 ? 1 : axis == 2 ? 9 : 0),
                                  corner.x + (axis == 0 ? 1 : 0));
-    precise const vec4 clip =
-        frame.eyes[eye].clip_from_voxel * vec4(crossing(first + corner, axis, lower, upper, iso), 1.0);
+    const vec3 position = crossing(first + corner, axis, lower, upper, iso);
+    precise const vec4 clip = frame.eyes[eye].clip_from_voxel * vec4(position, 1.0);
     return clip;
 }
 

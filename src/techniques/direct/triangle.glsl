@@ -1,11 +1,11 @@
 // One triangle on the pixel grid, as hardware does it: positions snapped to 1/256 of a pixel, exact
 // integer edge functions, the top-left rule, depth as a plane. Needs write_pixel(eye, pixel, depth,
-// front), and SNAPPED. What is computed here is precise, so that a block gets the same bits from one
-// thread a triangle and from several.
+// front), and SNAPPED. What is computed here is precise, so that a block gets the same bits from
+// one thread a triangle and from several.
 
 struct Vertex {
     ivec2 pixel;     // 1/256 of a pixel, from the middle of the origin, a pixel
-    vec2 unsnapped;  // pixels, from the middle of the picture's first one; the same place if SNAPPED
+    vec2 unsnapped;  // pixels, from the middle of the picture's first; the same place if SNAPPED
     float depth;
 };
 
@@ -39,7 +39,8 @@ Plane plane_through(Vertex a, Vertex b, Vertex c) {
     precise const float area = ab.x * ac.y - ab.y * ac.x;
     precise const vec2 slope = vec2(ab.z * ac.y - ab.y * ac.z, ab.x * ac.z - ab.z * ac.x) / area;
     return Plane(a.unsnapped, area == 0.0 ? vec2(0.0) : slope, a.depth,
-                 min(max(max(a.depth, b.depth), c.depth), 1.0), min(min(a.depth, b.depth), c.depth));
+                 min(max(max(a.depth, b.depth), c.depth), 1.0),
+                 min(min(a.depth, b.depth), c.depth));
 }
 
 float depth_at(Plane plane, ivec2 pixel) {
@@ -82,8 +83,9 @@ void rasterize_small(uint eye, ivec2 origin, Vertex vertex_a, Vertex vertex_b, V
     for (int y = box.low.y; y <= box.high.y; ++y) {
         ivec3 edges = row;
         for (int x = box.low.x; x <= box.high.x; ++x) {
+            const ivec2 pixel = origin + ivec2(x, y);
             if ((edges.x | edges.y | edges.z) >= 0)
-                write_pixel(eye, origin + ivec2(x, y), depth_at(plane, origin + ivec2(x, y)), front);
+                write_pixel(eye, pixel, depth_at(plane, pixel), front);
             edges += step_x;
         }
         row += step_y;
