@@ -16,7 +16,7 @@ struct Settings {
     std::vector<std::string> sizes, sequences;
     uint32_t frames = 0;  // counted ones for each row of the results, in two rounds
     uint32_t warm_up = 10;
-    double warm_up_ms = 200;
+    double warm_up_ms = 500;
     std::vector<double> sweep{0.2, 0.9, 29};  // first, last, how many; shares of the value range
     std::vector<double> degrees{0.25, 1, 4};  // a frame, of the orbits
     double azimuth = 30, elevation = 20, zoom = 1;

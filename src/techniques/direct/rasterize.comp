@@ -228,9 +228,6 @@ vec3 to_screen(vec4 clip) {
 #ifdef LARGE
 #include "techniques/direct/clip.glsl"
 
-// So many threads take a triangle together.
-const uint TEAM = 32;
-
 // The edge that a triangle's corner lies on: nine bits a corner, four for the row and five for the
 // edge's bit there.
 uint corner_edge(Listed triangle, uint corner) {
@@ -252,7 +249,7 @@ void rasterize(uint eye, uvec3 first, float iso) {
         for (uint corner = 2; corner < polygon.count; ++corner)
             rasterize_large(eye, vertex_at(to_screen(polygon.corners[0])),
                             vertex_at(to_screen(polygon.corners[corner - 1])),
-                            vertex_at(to_screen(polygon.corners[corner])), thread, TEAM);
+                            vertex_at(to_screen(polygon.corners[corner])), thread);
     }
 }
 #else

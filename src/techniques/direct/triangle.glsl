@@ -3,6 +3,10 @@
 // front), and SNAPPED. What is computed here is precise, so that a block gets the same bits from
 // one thread a triangle and from several.
 
+// Threads that take a large triangle together, and the patch of pixels that they take at once.
+const uint TEAM = 32;
+const uvec2 TEAM_SIDES = uvec2(8, 4);
+
 struct Vertex {
     ivec2 pixel;     // 1/256 of a pixel, from the middle of the origin, a pixel
     vec2 unsnapped;  // pixels, from the middle of the picture's first; the same place if SNAPPED
@@ -59,37 +63,48 @@ int edge_at(ivec2 from, ivec2 along, ivec2 pixel) {
     return along.x * p.y - along.y * p.x - (owns_samples(along) ? 0 : 1);
 }
 
-// By one thread; the triangle's box has less than 128 pixels a side.
-void rasterize_small(uint eye, ivec2 origin, Vertex vertex_a, Vertex vertex_b, Vertex vertex_c) {
-    const ivec2 a = vertex_a.pixel;
-    ivec2 b = vertex_b.pixel, c = vertex_c.pixel;
-    Box box;
-    if (!find_box(origin, a, b, c, box)) return;
-    const ivec2 ab = b - a, ac = c - a;
-    const int area = ab.x * ac.y - ab.y * ac.x;
-    if (area == 0) return;
-    const bool front = area > 0;
-    if (!front) {
-        const ivec2 swapped = b;
-        b = c;
-        c = swapped;
-    }
-    const ivec2 edge_a = b - a, edge_b = c - b, edge_c = a - c;
-    const ivec3 step_x = -256 * ivec3(edge_a.y, edge_b.y, edge_c.y);
-    const ivec3 step_y = 256 * ivec3(edge_a.x, edge_b.x, edge_c.x);
-    ivec3 row = ivec3(edge_at(a, edge_a, box.low), edge_at(b, edge_b, box.low),
-                      edge_at(c, edge_c, box.low));
-    const Plane plane = plane_through(vertex_a, vertex_b, vertex_c);
-    for (int y = box.low.y; y <= box.high.y; ++y) {
+// A triangle's place, in the order in which its edges turn left.
+struct Turned {
+    ivec2 a, b, c;
+    bool front;
+};
+
+Turned turned(Vertex a, Vertex b, Vertex c, bool front) {
+    return front ? Turned(a.pixel, b.pixel, c.pixel, front)
+                 : Turned(a.pixel, c.pixel, b.pixel, front);
+}
+
+// The pixels of a box from `start` on, each `step`-th along x and y. The triangle has less than 128
+// pixels a side, so that edge functions fit 32 bits.
+void rasterize_steps(uint eye, ivec2 origin, Turned t, Plane plane, Box box, ivec2 start,
+                     ivec2 step) {
+    const ivec2 edge_a = t.b - t.a, edge_b = t.c - t.b, edge_c = t.a - t.c;
+    const ivec3 step_x = -256 * step.x * ivec3(edge_a.y, edge_b.y, edge_c.y);
+    const ivec3 step_y = 256 * step.y * ivec3(edge_a.x, edge_b.x, edge_c.x);
+    const ivec2 first = box.low + start;
+    ivec3 row = ivec3(edge_at(t.a, edge_a, first), edge_at(t.b, edge_b, first),
+                      edge_at(t.c, edge_c, first));
+    for (int y = first.y; y <= box.high.y; y += step.y) {
         ivec3 edges = row;
-        for (int x = box.low.x; x <= box.high.x; ++x) {
+        for (int x = first.x; x <= box.high.x; x += step.x) {
             const ivec2 pixel = origin + ivec2(x, y);
             if ((edges.x | edges.y | edges.z) >= 0)
-                write_pixel(eye, pixel, depth_at(plane, pixel), front);
+                write_pixel(eye, pixel, depth_at(plane, pixel), t.front);
             edges += step_x;
         }
         row += step_y;
     }
+}
+
+// By one thread.
+void rasterize_small(uint eye, ivec2 origin, Vertex a, Vertex b, Vertex c) {
+    Box box;
+    if (!find_box(origin, a.pixel, b.pixel, c.pixel, box)) return;
+    const ivec2 ab = b.pixel - a.pixel, ac = c.pixel - a.pixel;
+    const int area = ab.x * ac.y - ab.y * ac.x;
+    if (area == 0) return;
+    rasterize_steps(eye, origin, turned(a, b, c, area > 0), plane_through(a, b, c), box, ivec2(0),
+                    ivec2(1));
 }
 
 // The sign of a cross product, in 64 bits.
@@ -108,26 +123,26 @@ bool is_inside(ivec2 from, ivec2 to, ivec2 pixel) {
     return side > 0 || (side == 0 && owns_samples(to - from));
 }
 
-// By several threads together; the triangle may have any size.
-void rasterize_large(uint eye, Vertex vertex_a, Vertex vertex_b, Vertex vertex_c, uint thread,
-                     uint threads) {
-    const ivec2 a = vertex_a.pixel;
-    ivec2 b = vertex_b.pixel, c = vertex_c.pixel;
+// By a team of threads, each its pixel of every patch of TEAM_SIDES; the triangle may have any
+// size.
+void rasterize_large(uint eye, Vertex a, Vertex b, Vertex c, uint thread) {
     Box box;
-    if (!find_box(ivec2(0), a, b, c, box)) return;
-    const int area = cross_sign(b - a, c - a);
+    if (!find_box(ivec2(0), a.pixel, b.pixel, c.pixel, box)) return;
+    const int area = cross_sign(b.pixel - a.pixel, c.pixel - a.pixel);
     if (area == 0) return;
-    const bool front = area > 0;
-    if (!front) {
-        const ivec2 swapped = b;
-        b = c;
-        c = swapped;
+    const Turned t = turned(a, b, c, area > 0);
+    const Plane plane = plane_through(a, b, c);
+    const ivec2 start = ivec2(thread % TEAM_SIDES.x, thread / TEAM_SIDES.x);
+    const ivec2 sides = max(max(t.a, t.b), t.c) - min(min(t.a, t.b), t.c);
+    if (all(lessThan(sides, ivec2(120 * 256)))) {
+        rasterize_steps(eye, ivec2(0), t, plane, box, start, ivec2(TEAM_SIDES));
+        return;
     }
-    const Plane plane = plane_through(vertex_a, vertex_b, vertex_c);
-    const uvec2 sides = uvec2(box.high - box.low + 1);
-    for (uint i = thread; i < sides.x * sides.y; i += threads) {
-        const ivec2 pixel = box.low + ivec2(i % sides.x, i / sides.x);
-        if (is_inside(a, b, pixel) && is_inside(b, c, pixel) && is_inside(c, a, pixel))
-            write_pixel(eye, pixel, depth_at(plane, pixel), front);
-    }
+    for (int y = box.low.y + start.y; y <= box.high.y; y += int(TEAM_SIDES.y))
+        for (int x = box.low.x + start.x; x <= box.high.x; x += int(TEAM_SIDES.x)) {
+            const ivec2 pixel = ivec2(x, y);
+            if (is_inside(t.a, t.b, pixel) && is_inside(t.b, t.c, pixel) &&
+                is_inside(t.c, t.a, pixel))
+                write_pixel(eye, pixel, depth_at(plane, pixel), t.front);
+        }
 }
