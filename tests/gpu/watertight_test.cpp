@@ -6,12 +6,14 @@
 // triangles in a pixel to triangles larger than the picture.
 #include <isorast/image.h>
 
+#include <optional>
 #include <random>
 
 #include "gpu/gpu_fixture.h"
 #include "image/view.h"
 #include "rasterize_counting.h"
 #include "rasterize_large_counting.h"
+#include "rasterize_subgroups_counting.h"
 #include "techniques/direct/rasterizer.h"
 
 namespace {
@@ -24,7 +26,8 @@ constexpr uint32_t SNAPPED = 1;  // as on a GPU
 
 class Counting {
 public:
-    Counting(const gpu::Device& device, const Volume& volume, Size size)
+    // `sums`: lists are made by sums across subgroups, whatever the device prefers.
+    Counting(const gpu::Device& device, const Volume& volume, Size size, bool sums)
         : grid_(device, series_of({&volume, 1}), 0, 0),
           culling_(grid_, make_depth_pyramid(grid_), 1, /* two_sizes= */ true),
           placement_{volume.affine, volume.dims},
@@ -40,8 +43,10 @@ public:
         read_ = gpu::Buffer(device, bytes_, Memory::host, "a test");
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
                                    Kind::image};
-        const std::array<std::span<const uint32_t>, 2> code{rasterize_counting,
-                                                            rasterize_large_counting};
+        const std::array<std::span<const uint32_t>, 2> code{
+            sums ? std::span<const uint32_t>(rasterize_subgroups_counting)
+                 : std::span<const uint32_t>(rasterize_counting),
+            rasterize_large_counting};
         for (size_t i = 0; i < code.size(); ++i)
             pipelines_[i] = gpu::Pipeline::compute(
                 device, grid_.pipeline_info("counting", bindings, 12, {/* CLIPPED= */ 0, SNAPPED}),
@@ -96,7 +101,9 @@ TEST_F(GpuTest, FrontFacesLessBackFacesIsZeroAtEveryPixel) {
     const int views = std::getenv("ISORAST_QUICK") ? 20 : 250;
     for (uint32_t side : {6u, 15u, 24u, 40u}) {
         const Volume volume = reference::random_blob(side, side);
-        Counting counting(gpu.device(), volume, size);
+        Counting plain(gpu.device(), volume, size, /* sums= */ false);
+        std::optional<Counting> summing;
+        if (gpu.info().subgroup_sums) summing.emplace(gpu.device(), volume, size, /* sums= */ true);
         for (int i = 0; i < views; ++i) {
             const OrbitOptions options{.roll_degrees = uniform(0, 360),
                                        .zoom = std::exp(uniform(-3, 2.5)),
@@ -104,6 +111,7 @@ TEST_F(GpuTest, FrontFacesLessBackFacesIsZeroAtEveryPixel) {
             Frame f = frame(orbit(volume, uniform(0, 360), uniform(-89, 89), options), {100});
             f.size = size;
             f.culling = false;
+            Counting& counting = summing && i % 2 ? *summing : plain;
             ASSERT_EQ(not_zero(counting.count(f)), 0u) << "side " << side << ", view " << i;
         }
     }
@@ -115,7 +123,7 @@ TEST_F(GpuTest, AnOpenSurfaceIsSeenToBeOpen) {
     Frame f = frame(orbit(volume, 30, 20), {0});
     f.size = size;
     f.culling = false;
-    EXPECT_GT(not_zero(Counting(gpu.device(), volume, size).count(f)), 500u);
+    EXPECT_GT(not_zero(Counting(gpu.device(), volume, size, false).count(f)), 500u);
 }
 
 }  // namespace

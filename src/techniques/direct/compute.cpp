@@ -79,7 +79,8 @@ private:
         if (large && numbered)
             return grid_.pick(rasterize_large_numbered, rasterize_large_numbered_bricked);
         if (large) return grid_.pick(rasterize_large, rasterize_large_bricked);
-        const bool sums = grid_.device().info().subgroup_sums;
+        // CPU drivers add up a subgroup lane by lane, and have no atomics that wait for each other.
+        const bool sums = grid_.device().info().subgroup_sums && !grid_.device().is_cpu();
         if (sums && numbered)
             return grid_.pick(rasterize_subgroups_numbered, rasterize_subgroups_numbered_bricked);
         if (sums) return grid_.pick(rasterize_subgroups, rasterize_subgroups_bricked);

@@ -8,6 +8,7 @@
 // variant rasterize_numbered: -DNUMBERED
 // variant rasterize_subgroups: -DSUBGROUPS
 // variant rasterize_subgroups_numbered: -DSUBGROUPS -DNUMBERED
+// variant rasterize_subgroups_counting: -DSUBGROUPS -DCOUNTING
 // variant rasterize_counting: -DCOUNTING
 // variant rasterize_large: -DLARGE
 // variant rasterize_large_numbered: -DLARGE -DNUMBERED
