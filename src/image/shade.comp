@@ -119,8 +119,7 @@ vec4 shade(Ray ray, Hit hit, vec3 surface_color) {
         const float near = frame.depth_range.x, far = frame.depth_range.y;
         return vec4(vec3(mix(0.95, 0.05, clamp((hit.t - near) / (far - near), 0.0, 1.0))), 1.0);
     }
-    const vec3 gradient =
-        FILTERED ? field_gradient_filtered(p) : field_gradient(p);
+    const vec3 gradient = FILTERED ? field_gradient_filtered(p) : field_gradient(p);
     const bool outward = hit.refined ? hit.entering : dot(gradient, ray.direction) > 0.0;
     const vec3 normal = world_normal(gradient, ray.direction, outward);
     if (frame.size.w == NORMALS) return vec4(0.5 + 0.5 * normal, 1.0);

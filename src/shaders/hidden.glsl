@@ -2,24 +2,26 @@
 #include "shaders/pyramid.glsl"
 
 // The squares of the pyramid that an extent touches: at the finest level at which they are at most
-// 4x4, or else at the coarsest.
+// `most` along x and y, or else at the coarsest.
 struct Squares {
     uint level;
     uvec2 first, end;  // both belong to it
 };
 
-Squares squares_of(uvec2 low_pixel, uvec2 high_pixel) {
+Squares squares_of(Extent extent, uint most) {
+    const vec2 last = vec2(frame.size.xy) - 1.0;
+    const uvec2 low_pixel = uvec2(clamp(floor(extent.least), vec2(0.0), last));
+    const uvec2 high_pixel = uvec2(clamp(floor(extent.greatest), vec2(0.0), last));
     uint level = 1;
     while (level < PYRAMID_LEVELS &&
-           any(greaterThan((high_pixel >> level) - (low_pixel >> level), uvec2(3)))) ++level;
+           any(greaterThanEqual((high_pixel >> level) - (low_pixel >> level), uvec2(most))))
+        ++level;
     return Squares(level, low_pixel >> level, high_pixel >> level);
 }
 
 // True if depth already drawn is nearer than all of a box, at every pixel that the box can touch.
 bool is_hidden(uint eye, Extent extent) {
-    const vec2 last = vec2(frame.size.xy) - 1.0;
-    const Squares squares = squares_of(uvec2(clamp(floor(extent.least), vec2(0.0), last)),
-                                       uvec2(clamp(floor(extent.greatest), vec2(0.0), last)));
+    const Squares squares = squares_of(extent, 4);
     if (any(greaterThan(squares.end - squares.first, uvec2(15)))) return false;  // half a screen
     const uint offset = pyramid_offset(eye, squares.level), width = pyramid_size(squares.level).x;
     float farthest = 1.0;

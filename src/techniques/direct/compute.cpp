@@ -3,6 +3,7 @@
 // graphics queue. Depth is kept by a 32-bit atomic maximum of the float's bits.
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "clear_depth_comp.h"
@@ -75,6 +76,7 @@ private:
             code(numbered, large));
         return pipeline;
     }
+
     std::span<const uint32_t> code(bool numbered, bool large) const {
         if (large && numbered)
             return grid_.pick(rasterize_large_numbered, rasterize_large_numbered_bricked);

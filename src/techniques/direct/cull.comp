@@ -33,9 +33,9 @@ layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; 
 layout(set = 1, binding = 5, std430) readonly buffer TestedBlocks { uint tested_blocks[]; };
 #endif
 layout(push_constant) uniform Push {
-    uint first_draw;         // of the list of small blocks; that of large ones follows
+    uint first_draw;  // of the list of small blocks; that of large ones follows
     uint draws_of_list;
-    uint workgroups;         // that draw a block
+    uint workgroups;  // that draw a block
 };
 
 const uint LONG = 8192;  // quartets
@@ -65,16 +65,17 @@ bool is_selected(uvec3 block, bool seen, out bool large, out bool look) {
     corners_of(block, low, high);
     bool selected = false;
     for (uint eye = 0; eye < frame.counts.x; ++eye) {
-        if (SELECT != ALL && SELECT != TESTED && !in_frustum(eye, low, high)) continue;
         Extent extent;
         const bool whole = project(eye, low, high, extent);
+        // In any eye, also one that does not see it: the block is drawn for both.
+        large = large || !whole ||
+                any(greaterThan(extent.greatest - extent.least, vec2(SMALL_SIDE))) ||
+                any(greaterThan(abs(extent.least), vec2(GUARD)));
+        if (SELECT != ALL && SELECT != TESTED && !in_frustum(eye, low, high)) continue;
 #ifdef HIZ
         if (whole && is_hidden(eye, extent)) continue;
 #endif
         selected = true;
-        large = large || !whole ||
-                any(greaterThan(extent.greatest - extent.least, vec2(SMALL_SIDE))) ||
-                any(greaterThan(abs(extent.least), vec2(GUARD)));
     }
 #ifdef HIZ
     look = selected && !large;

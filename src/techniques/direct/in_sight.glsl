@@ -2,10 +2,10 @@
 // the farthest depth drawn there so far. A ray enters a box where it has entered all three pairs of
 // parallel faces, and leaves it where it leaves the first. Nearness, 1 / view depth (orthographic:
 // less the view depth), of a face's plane is an affine function of the pixel: two multiplications.
-// Needs pyramid[].
+// Needs shaders/hidden.glsl.
 #include "shaders/ray.glsl"
 
-const uint TEAM = 32;          // threads that look at a block together
+const uint TEAM = 32;           // threads that look at a block together
 const uint SQUARES_ALONG = 12;  // at most, that a block is looked at in
 
 bool is_orthographic() { return frame.depth_range.z != 0.0; }
@@ -57,22 +57,17 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
         }
     }
     const float slack = cell_depth(eye);
-    const ivec2 last = ivec2(frame.size.xy) - 1;
-    const uvec2 low_pixel = uvec2(clamp(ivec2(floor(extent.least)), ivec2(0), last));
-    const uvec2 high_pixel = uvec2(clamp(ivec2(floor(extent.greatest)), ivec2(0), last));
-    uint level = 1;
-    while (level < PYRAMID_LEVELS && any(greaterThanEqual(
-               (high_pixel >> level) - (low_pixel >> level), uvec2(SQUARES_ALONG)))) ++level;
-    const uvec2 first = low_pixel >> level, size = (high_pixel >> level) - first + 1;
-    const uint offset = pyramid_offset(eye, level), width = pyramid_size(level).x;
+    const Squares squares = squares_of(extent, SQUARES_ALONG);
+    const uvec2 size = squares.end - squares.first + 1;
+    const uint offset = pyramid_offset(eye, squares.level), width = pyramid_size(squares.level).x;
     // At the most favourable corner of a square.
-    const vec2 half_square = vec2(1u << level) / vec2(frame.size.xy);
+    const vec2 half_square = vec2(1u << squares.level) / vec2(frame.size.xy);
     for (int axis = 0; axis < 3; ++axis) {
         enter[axis].x += dot(abs(enter[axis].yz), half_square);
         leave[axis].x -= dot(abs(leave[axis].yz), half_square);
     }
     for (uint i = thread; i < size.x * size.y; i += TEAM) {
-        const uvec2 square = first + uvec2(i % size.x, i / size.x);
+        const uvec2 square = squares.first + uvec2(i % size.x, i / size.x);
         const vec2 middle = vec2(2 * square + 1) * half_square - 1.0;
         const vec3 at = vec3(1.0, middle);
         const float entered = min(min(dot(enter[0], at), dot(enter[1], at)), dot(enter[2], at));

@@ -66,7 +66,8 @@ const uint ROWS = 81;  // of corners
 // voxels are packed, and the lists are as long as most blocks need; blocks with more are worked off
 // in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197 crossed
 // edges and 160 triangles.
-const uint MAX_VERTICES = 208, MAX_CELLS = 208, MAX_TRIANGLES = 360, CELL_ROWS = 64;
+const uint MAX_LISTED = 208;  // vertices, and occupied cells
+const uint MAX_TRIANGLES = 360, CELL_ROWS = 64;
 
 const uint VALUES_OF_WORD = 32 / VOXEL_BITS, ROW_WORDS = (9 * VOXEL_BITS + 31) / 32;
 shared uint values[ROWS * ROW_WORDS];
@@ -77,8 +78,8 @@ shared uint row_totals;                // vertices | cells << 16
 shared uint triangle_total;
 // First the edges that vertices lie on, and the occupied cells. Then the vertices' pixels on the
 // grid of 1/256, from the origin, x | y << 16; and their depth.
-shared uint vertex_pixels[MAX_VERTICES], vertex_depths[MAX_CELLS];
-shared vec2 vertex_unsnapped[SNAPPED ? 1 : MAX_VERTICES];
+shared uint vertex_pixels[MAX_LISTED], vertex_depths[MAX_LISTED];
+shared vec2 vertex_unsnapped[SNAPPED ? 1 : MAX_LISTED];
 shared ivec2 origin;  // a pixel that a corner of the block lies in
 
 // Takes `count` places in a list whose length is the shared `total`; `first` becomes the first one.
@@ -165,7 +166,7 @@ void list_rows(Slab slab, ivec3 left) {
         rows[row] = uvec2(crossed, first & 0xffffu);
         const uint end = first + counts;
         uint vertex = end & 0xffffu, cell = end >> 16;
-        if (vertex > MAX_VERTICES || cell > MAX_CELLS) continue;  // too many, see fits()
+        if (max(vertex, cell) > MAX_LISTED) continue;  // too many, see fits()
         for (; crossed != 0; crossed ^= 1u << findMSB(crossed))
             vertex_pixels[--vertex] = row << 5 | findMSB(crossed);
         for (; cells != 0; cells ^= 1u << findMSB(cells))
@@ -174,7 +175,7 @@ void list_rows(Slab slab, ivec3 left) {
 }
 
 void list_triangles() {
-    const uint cell_total = min(row_totals >> 16, MAX_CELLS);
+    const uint cell_total = min(row_totals >> 16, MAX_LISTED);
     for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
         const uint cell = vertex_depths[i] & 511u;
         const uint entry =
@@ -190,7 +191,7 @@ void list_triangles() {
 
 // Whether the lists hold all. If rows do not fit, some cells are not listed, nor what they hold.
 bool fits() {
-    return (row_totals & 0xffffu) <= MAX_VERTICES && row_totals >> 16 <= MAX_CELLS &&
+    return max(row_totals & 0xffffu, row_totals >> 16) <= MAX_LISTED &&
            triangle_total <= MAX_TRIANGLES;
 }
 
