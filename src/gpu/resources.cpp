@@ -2,6 +2,7 @@
 // Buffers, images and samplers.
 #include "gpu/resources.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -61,7 +62,7 @@ VkImage create_image(const Device& device, const ImageInfo& info) {
         .mipLevels = 1,
         .arrayLayers = info.layers,
         .samples = VK_SAMPLE_COUNT_1_BIT,
-        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .tiling = info.linear ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL,
         .usage = info.usage,
         .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
         .queueFamilyIndexCount = shared ? uint32_t(families.size()) : 0,
@@ -79,8 +80,20 @@ Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
     VkMemoryRequirements requirements;
     vkGetImageMemoryRequirements(device.handle(), image_, &requirements);
     bytes_ = requirements.size;
+    if (info.linear) {
+        const VkBufferCreateInfo alias{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                       .size = requirements.size,
+                                       .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+        VK_CHECK(vkCreateBuffer(device.handle(), &alias, nullptr, &buffer_));
+        VkMemoryRequirements also;
+        vkGetBufferMemoryRequirements(device.handle(), buffer_, &also);
+        requirements.size = std::max(requirements.size, also.size);
+        requirements.alignment = std::max(requirements.alignment, also.alignment);
+        requirements.memoryTypeBits &= also.memoryTypeBits;
+    }
     memory_ = device.allocate(requirements, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0, what);
     VK_CHECK(vkBindImageMemory(device.handle(), image_, memory_, 0));
+    if (info.linear) VK_CHECK(vkBindBufferMemory(device.handle(), buffer_, memory_, 0));
     const VkImageViewType type = info.is_3d ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D_ARRAY;
     view_ = make_view(type, info.format, 0, info.layers);
     if (info.as_bits) bits_view_ = make_view(type, VK_FORMAT_R32_UINT, 0, info.layers);
@@ -104,6 +117,7 @@ Texture::~Texture() {
     if (!device_) return;
     for (VkImageView view : layer_views_)
         vkDestroyImageView(device_->handle(), view, nullptr);
+    vkDestroyBuffer(device_->handle(), buffer_, nullptr);
     vkDestroyImageView(device_->handle(), bits_view_, nullptr);
     vkDestroyImageView(device_->handle(), view_, nullptr);
     vkDestroyImage(device_->handle(), image_, nullptr);
@@ -118,6 +132,13 @@ uint64_t Texture::bytes_needed(const Device& device, const ImageInfo& info) {
     return requirements.size;
 }
 
+VkSubresourceLayout Texture::layout() const {
+    const VkImageSubresource all{.aspectMask = aspect()};
+    VkSubresourceLayout layout;
+    vkGetImageSubresourceLayout(device_->handle(), image_, &all, &layout);
+    return layout;
+}
+
 VkImageAspectFlags Texture::aspect() const {
     return info_.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT
                                                 : VK_IMAGE_ASPECT_COLOR_BIT;
@@ -129,6 +150,7 @@ void Texture::swap(Texture& other) noexcept {
     std::swap(view_, other.view_);
     std::swap(bits_view_, other.bits_view_);
     std::swap(layer_views_, other.layer_views_);
+    std::swap(buffer_, other.buffer_);
     std::swap(memory_, other.memory_);
     std::swap(info_, other.info_);
     std::swap(bytes_, other.bytes_);

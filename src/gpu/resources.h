@@ -55,6 +55,7 @@ struct ImageInfo {
     uint32_t layers = 1;    // of a 2D image, which is an array to all shaders; at most 2
     bool uploaded = false;  // written on the upload queue too
     bool as_bits = false;   // 32-bit texels that can be seen as R32_UINT too, for atomics
+    bool linear = false;    // rows of texels in memory that is a buffer too; Texture::buffer
 };
 
 class Texture {
@@ -80,6 +81,9 @@ public:
     VkExtent3D extent() const { return info_.extent; }
     VkImageAspectFlags aspect() const;
     uint64_t bytes() const { return bytes_; }
+    // The same memory, for ImageInfo::linear, and how far apart its rows and slices are.
+    VkBuffer buffer() const { return buffer_; }
+    VkSubresourceLayout layout() const;
     explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
 private:
@@ -90,6 +94,7 @@ private:
     VkImage image_ = VK_NULL_HANDLE;
     VkImageView view_ = VK_NULL_HANDLE, bits_view_ = VK_NULL_HANDLE;
     std::array<VkImageView, 2> layer_views_{};
+    VkBuffer buffer_ = VK_NULL_HANDLE;
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
     ImageInfo info_;
     uint64_t bytes_ = 0;

@@ -75,6 +75,24 @@ BrickPlan plan_for(const gpu::Device& device, const Volume& volume, const Stored
     return plan_bricks(voxels, stored.bytes(), side, device.max_allocation() / 8 * 7);
 }
 
+// Whether shaders fetch voxels from the image's memory: where the CPU draws, images in rows are
+// what they are anyway, and a texture unit is a call.
+bool can_load(const gpu::Device& device, const StepFormat& format) {
+    if (!device.is_cpu() || !format.bricks.one()) return false;
+    StepFormat linear = format;
+    linear.in_buffer = true;
+    const gpu::ImageInfo image = brick_image(linear, 0);
+    VkImageFormatProperties properties;
+    return vkGetPhysicalDeviceImageFormatProperties(device.physical(), image.format,
+                                                    VK_IMAGE_TYPE_3D, VK_IMAGE_TILING_LINEAR,
+                                                    image.usage, 0, &properties) == VK_SUCCESS &&
+           glm::all(glm::lessThanEqual(
+               format.bricks.voxels,
+               glm::uvec3(properties.maxExtent.width, properties.maxExtent.height,
+                          properties.maxExtent.depth))) &&
+           gpu::Texture::bytes_needed(device, image) <= device.limits().maxStorageBufferRange;
+}
+
 void check_bricks(const gpu::Device& device, const Volume& volume, const BrickPlan& plan,
                   uint32_t max_brick_side) {
     if (plan.count() > shared::MAX_BRICKS)
@@ -127,15 +145,21 @@ Grid::Grid(const gpu::Device& device, const Series& series, uint32_t max_brick_s
     format_.minmax_bytes = minmax_bytes(info_, format_.stored);
     format_.sampled_on_gpu =
         first.field && first.bytes.span().empty() && can_sample_on_gpu(device, format_.stored);
+    format_.in_buffer = can_load(device, format_);
     steps_ = std::make_unique<Steps>(device, series, first, format_, step_bytes);
 
     using Memory = gpu::Buffer::Memory;
     info_buffer_ = gpu::Buffer(device, sizeof(info_), Memory::device, "the grid's description");
     frame_buffer_ =
         gpu::Buffer(device, sizeof(shared::FrameInfo), Memory::device, "the frame's description");
+    step_ = &steps_->first();
+    if (format_.in_buffer) {
+        const VkSubresourceLayout layout = step_->bricks[0].layout();
+        info_.voxels.w = uint32_t(layout.rowPitch / format_.stored.bytes());
+        info_.brick_cells.w = uint32_t(layout.depthPitch / format_.stored.bytes());
+    }
     make_scene_layout();
     make_pipelines();
-    step_ = &steps_->first();
     gpu::run_once(device_, [&](gpu::Commands& commands) { begin_frame(commands, {}); });
     building_ = false;
 }
@@ -168,7 +192,8 @@ std::array<double, 2> Grid::value_range() const {
 
 gpu::PipelineInfo Grid::pipeline_info(const char* name, std::vector<gpu::Kind> bindings,
                                       uint32_t push_bytes, std::vector<uint32_t> more) const {
-    std::vector<uint32_t> constants{stored().bits};
+    std::vector<uint32_t> constants{stored().bits +
+                                    (format_.in_buffer ? shared::VOXELS_IN_BUFFER : 0)};
     constants.insert(constants.end(), more.begin(), more.end());
     return {name, scene_layout_, std::move(bindings), push_bytes, std::move(constants)};
 }
@@ -196,6 +221,8 @@ void Grid::make_scene_layout() {
         VkDescriptorSetLayoutBinding{shared::BIND_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLER, 1, all,
                                      nullptr},
         VkDescriptorSetLayoutBinding{shared::BIND_MINMAX, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, all,
+                                     nullptr},
+        VkDescriptorSetLayoutBinding{shared::BIND_VOXELS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, all,
                                      nullptr}};
     const VkDescriptorSetLayoutCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -239,6 +266,9 @@ VkDescriptorSet Grid::make_set(gpu::Commands& commands) const {
     const std::array uniforms{VkDescriptorBufferInfo{frame_buffer_.handle(), 0, VK_WHOLE_SIZE},
                               VkDescriptorBufferInfo{info_buffer_.handle(), 0, VK_WHOLE_SIZE}};
     const VkDescriptorBufferInfo minmax{step_->minmax.handle(), 0, VK_WHOLE_SIZE};
+    VkDescriptorBufferInfo voxels = minmax;
+    if (format_.in_buffer)
+        voxels = {step_->bricks[0].buffer(), step_->bricks[0].layout().offset, VK_WHOLE_SIZE};
     const VkDescriptorImageInfo sampler{.sampler = sampler_.handle()};
     // Every slot of the array must hold an image: those without a brick repeat the first.
     std::array<VkDescriptorImageInfo, shared::MAX_BRICKS> images;
@@ -262,7 +292,8 @@ VkDescriptorSet Grid::make_set(gpu::Commands& commands) const {
         write(shared::BIND_BRICKS, shared::MAX_BRICKS, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, nullptr,
               images.data()),
         write(shared::BIND_SAMPLER, 1, VK_DESCRIPTOR_TYPE_SAMPLER, nullptr, &sampler),
-        write(shared::BIND_MINMAX, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, &minmax, nullptr)};
+        write(shared::BIND_MINMAX, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, &minmax, nullptr),
+        write(shared::BIND_VOXELS, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, &voxels, nullptr)};
     vkUpdateDescriptorSets(device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
     return set;
 }

@@ -82,7 +82,8 @@ gpu::ImageInfo brick_image(const StepFormat& format, uint32_t brick) {
             .extent = {size.x, size.y, size.z},
             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | written,
             .is_3d = true,
-            .uploaded = true};
+            .uploaded = true,
+            .linear = format.in_buffer};
 }
 
 Steps::Steps(const gpu::Device& device, const Series& series, const Volume& first,

@@ -37,6 +37,7 @@ struct StepFormat {
     Stored stored;
     uint64_t minmax_bytes = 0;
     bool sampled_on_gpu = false;  // formulas
+    bool in_buffer = false;       // one brick, linear: shaders fetch voxels from Texture::buffer
 };
 
 class Steps {

@@ -7,13 +7,17 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "shaders/shared.h"
 
-// 8 and 16: integers, seen as [0, 1]; 32: floats.
-layout(constant_id = 0) const uint VOXEL_BITS = 8;
+// 8 and 16: integers, seen as [0, 1]; 32: floats. And VOXELS_IN_BUFFER.
+layout(constant_id = 0) const uint VOXEL_FORMAT = 8;
+const uint VOXEL_BITS = VOXEL_FORMAT & 63u;
 
 layout(set = 0, binding = BIND_FRAME, std140) uniform FrameBlock { FrameInfo frame; };
 layout(set = 0, binding = BIND_GRID, std140) uniform GridBlock { GridInfo grid; };
 layout(set = 0, binding = BIND_BRICKS) uniform texture3D bricks[MAX_BRICKS];
 layout(set = 0, binding = BIND_SAMPLER) uniform sampler linear_sampler;
+// The only brick's memory.
+layout(set = 0, binding = BIND_VOXELS) readonly buffer Voxels16 { uint16_t voxels_16[]; };
+layout(set = 0, binding = BIND_VOXELS) readonly buffer Voxels32 { float voxels_32[]; };
 
 #ifdef SCENE_WRITES_MINMAX
 #define MINMAX_ACCESS

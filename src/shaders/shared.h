@@ -44,13 +44,15 @@ ISORAST_CONSTANT uint MAX_CLIPS = 8;      // clip planes
 
 // Descriptor set 0, the same in every pipeline.
 ISORAST_CONSTANT uint BIND_FRAME = 0, BIND_GRID = 1, BIND_BRICKS = 2, BIND_SAMPLER = 3,
-                      BIND_MINMAX = 4;
+                      BIND_MINMAX = 4, BIND_VOXELS = 5;
+// Added to the bits of a voxel where shaders fetch voxels from a buffer.
+ISORAST_CONSTANT uint VOXELS_IN_BUFFER = 64;
 
 struct GridInfo {
-    uvec4 voxels;       // xyz: voxels along each axis
+    uvec4 voxels;       // xyz: voxels along each axis; w: a row in VOXELS_IN_BUFFER, in voxels
     uvec4 blocks;       // xyz: blocks along each axis; w: all
     uvec4 groups;       // xyz: groups along each axis; w: all
-    uvec4 brick_cells;  // xyz: cells of a brick along each axis, whole blocks
+    uvec4 brick_cells;  // xyz: cells of a brick along each axis, whole blocks; w: a slice there
     uvec4 bricks;       // xyz: bricks along each axis; w: levels of the min-max pyramid
     vec4 range;  // x: the least value that gradients see; voxels that are not finite do no harm so
     uvec4 levels[MAX_LEVELS];  // xyz: nodes along each axis; w: index of the level's first node

@@ -23,12 +23,13 @@ Brick brick_of(ivec3 cell) {
 #endif
 }
 
-// 8- and 16-bit voxels come as fractions: rounding gives back the very integer, so that ties are
-// exact.
-float stored_value(float texel) {
-    if (VOXEL_BITS == 8) return round(texel * 255.0);
-    if (VOXEL_BITS == 16) return round(texel * 65535.0);
-    return texel;
+// CPU drivers take 40 ns for a texel and 2 ns for a word of a buffer.
+float load_voxel(ivec3 position) {
+    const uvec3 p = uvec3(position);
+    const uint index = p.x + grid.voxels.w * p.y + grid.brick_cells.w * p.z;
+    if (VOXEL_BITS == 8) return float(uint(voxels_16[index >> 1]) >> 8 * (index & 1u) & 0xffu);
+    if (VOXEL_BITS == 16) return float(uint(voxels_16[index]));
+    return voxels_32[index];
 }
 
 float fetch_texel(uint brick, ivec3 texel) {
@@ -49,7 +50,15 @@ float filter_texels(uint brick, vec3 texel) {
 }
 
 float voxel(Brick brick, ivec3 position) {
-    return stored_value(fetch_texel(brick.index, position - brick.origin));
+#ifndef BRICKED
+    if (VOXEL_FORMAT >= VOXELS_IN_BUFFER) return load_voxel(position);
+#endif
+    const float texel = fetch_texel(brick.index, position - brick.origin);
+    // 8- and 16-bit voxels come as fractions: rounding gives back the very integer, so that ties
+    // are exact.
+    if (VOXEL_BITS == 8) return round(texel * 255.0);
+    if (VOXEL_BITS == 16) return round(texel * 65535.0);
+    return texel;
 }
 
 ivec3 clamp_to_volume(ivec3 position) {

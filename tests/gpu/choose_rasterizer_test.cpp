@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What --rasterizer auto becomes: found once, remembered, and never in the way.
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -11,18 +13,22 @@ namespace {
 using namespace isorast;
 namespace fs = std::filesystem;
 
-// XDG_CACHE_HOME is `path` for as long as this lives.
+// XDG_CACHE_HOME is `path` for as long as this lives; what lies there then goes.
 class CacheAt {
 public:
-    explicit CacheAt(const fs::path& path) : before_(std::getenv("XDG_CACHE_HOME")) {
-        setenv("XDG_CACHE_HOME", path.c_str(), /* overwrite= */ 1);
+    explicit CacheAt(fs::path path) : path_(std::move(path)) {
+        setenv("XDG_CACHE_HOME", path_.c_str(), /* overwrite= */ 1);
     }
     CacheAt(const CacheAt&) = delete;
     CacheAt& operator=(const CacheAt&) = delete;
-    ~CacheAt() { setenv("XDG_CACHE_HOME", before_.c_str(), /* overwrite= */ 1); }
+    ~CacheAt() {
+        setenv("XDG_CACHE_HOME", before_.c_str(), /* overwrite= */ 1);
+        if (fs::is_directory(path_)) fs::remove_all(path_);
+    }
 
 private:
-    std::string before_;
+    fs::path path_;
+    std::string before_ = std::getenv("XDG_CACHE_HOME");
 };
 
 RasterizerChoice choose_anew(Gpu& gpu) {
@@ -49,8 +55,8 @@ TEST_F(GpuTest, TheComputeRasterizerPassesItsSelfTest) {
 }
 
 TEST_F(GpuTest, TheChoiceIsRememberedForDeviceAndDriver) {
-    const fs::path folder = ISORAST_BINARY_DIR "/test-cache/choose";
-    fs::remove_all(folder);
+    // The test may run at another width at the same time.
+    const fs::path folder = fmt::format("{}/choose-{}", std::getenv("XDG_CACHE_HOME"), getpid());
     const CacheAt here(folder);
     const RasterizerChoice found = choose_anew(gpu);
     std::vector<fs::path> files{fs::directory_iterator(folder / "isorast"), {}};

@@ -15,20 +15,22 @@
 #include "reference/agreement.h"
 #include "reference/scenes.h"
 
-// The width that lavapipe is asked for, in bits; 0 without that setting. Its cache on disk does not
-// know the width and would hand out code made for another one: so it is off, for the whole program.
+// The width that lavapipe is asked for, in bits; 0 without that setting.
 inline const int VECTOR_BITS = [] {
     const char* bits = std::getenv("LP_NATIVE_VECTOR_WIDTH");
-    if (bits) setenv("MESA_SHADER_CACHE_DISABLE", "true", /* overwrite= */ 1);
     return bits ? std::atoi(bits) : 0;
 }();
 // At 512 bits lavapipe (22.3 and 25.0, with LLVM 15) crashes on every fragment shader: compute
 // only.
 inline const bool GRAPHICS_CRASHES = VECTOR_BITS >= 512;
 
-// What is found out about a device under validation stays out of the user's cache.
+// What is found out about a device under validation stays out of the user's cache. A folder for
+// each width: lavapipe's own cache does not know the width and would hand out code made for another
+// one.
 inline const bool OWN_CACHE =
-    setenv("XDG_CACHE_HOME", ISORAST_BINARY_DIR "/test-cache", /* overwrite= */ 1) == 0;
+    setenv("XDG_CACHE_HOME",
+           fmt::format("{}/test-cache/{}", ISORAST_BINARY_DIR, VECTOR_BITS).c_str(),
+           /* overwrite= */ 1) == 0;
 
 struct Lane {
     std::string name;
