@@ -132,10 +132,12 @@ uint64_t Texture::bytes_needed(const Device& device, const ImageInfo& info) {
     return requirements.size;
 }
 
-VkSubresourceLayout Texture::layout() const {
-    const VkImageSubresource all{.aspectMask = aspect()};
+VkSubresourceLayout Texture::layout_needed(const Device& device, const ImageInfo& info) {
+    const VkImage image = create_image(device, info);
+    const VkImageSubresource all{.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT};
     VkSubresourceLayout layout;
-    vkGetImageSubresourceLayout(device_->handle(), image_, &all, &layout);
+    vkGetImageSubresourceLayout(device.handle(), image, &all, &layout);
+    vkDestroyImage(device.handle(), image, nullptr);
     return layout;
 }
 

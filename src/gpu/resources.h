@@ -71,6 +71,8 @@ public:
 
     // The bytes that such an image needs on the device, without making one.
     static uint64_t bytes_needed(const Device& device, const ImageInfo& info);
+    // How its rows and slices would lie in a buffer, for ImageInfo::linear.
+    static VkSubresourceLayout layout_needed(const Device& device, const ImageInfo& info);
 
     VkImage handle() const { return image_; }
     VkImageView view() const { return view_; }            // of a volume, or an array of all layers
@@ -81,9 +83,7 @@ public:
     VkExtent3D extent() const { return info_.extent; }
     VkImageAspectFlags aspect() const;
     uint64_t bytes() const { return bytes_; }
-    // The same memory, for ImageInfo::linear, and how far apart its rows and slices are.
-    VkBuffer buffer() const { return buffer_; }
-    VkSubresourceLayout layout() const;
+    VkBuffer buffer() const { return buffer_; }  // the same memory; ImageInfo::linear
     explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
 private:

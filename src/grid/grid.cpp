@@ -75,22 +75,32 @@ BrickPlan plan_for(const gpu::Device& device, const Volume& volume, const Stored
     return plan_bricks(voxels, stored.bytes(), side, device.max_allocation() / 8 * 7);
 }
 
-// Whether shaders fetch voxels from the image's memory: where the CPU draws, images in rows are
-// what they are anyway, and a texture unit is a call.
-bool can_load(const gpu::Device& device, const StepFormat& format) {
-    if (!device.is_cpu() || !format.bricks.one()) return false;
+// Whether the device can have this image with ImageInfo::linear.
+bool can_be_linear(const gpu::Device& device, const gpu::ImageInfo& image) {
+    VkImageFormatProperties most;
+    return vkGetPhysicalDeviceImageFormatProperties(device.physical(), image.format,
+                                                    VK_IMAGE_TYPE_3D, VK_IMAGE_TILING_LINEAR,
+                                                    image.usage, 0, &most) == VK_SUCCESS &&
+           image.extent.width <= most.maxExtent.width &&
+           image.extent.height <= most.maxExtent.height &&
+           image.extent.depth <= most.maxExtent.depth;
+}
+
+// Where the CPU draws, a texture unit is a call, and images lie in rows anyway: shaders fetch
+// voxels from the image's memory if it is one, and a buffer may be so large.
+void use_buffer(const gpu::Device& device, StepFormat& format, shared::GridInfo& info) {
+    if (!device.is_cpu() || !format.bricks.one()) return;
     StepFormat linear = format;
     linear.in_buffer = true;
     const gpu::ImageInfo image = brick_image(linear, 0);
-    VkImageFormatProperties properties;
-    return vkGetPhysicalDeviceImageFormatProperties(device.physical(), image.format,
-                                                    VK_IMAGE_TYPE_3D, VK_IMAGE_TILING_LINEAR,
-                                                    image.usage, 0, &properties) == VK_SUCCESS &&
-           glm::all(glm::lessThanEqual(
-               format.bricks.voxels,
-               glm::uvec3(properties.maxExtent.width, properties.maxExtent.height,
-                          properties.maxExtent.depth))) &&
-           gpu::Texture::bytes_needed(device, image) <= device.limits().maxStorageBufferRange;
+    if (!can_be_linear(device, image) ||
+        gpu::Texture::bytes_needed(device, image) > device.limits().maxStorageBufferRange)
+        return;
+    const VkSubresourceLayout layout = gpu::Texture::layout_needed(device, image);
+    if (layout.offset != 0 || layout.rowPitch % 4 != 0 || layout.depthPitch % 4 != 0) return;
+    format = linear;
+    info.voxels.w = uint32_t(layout.rowPitch / format.stored.bytes());
+    info.brick_cells.w = uint32_t(layout.depthPitch / format.stored.bytes());
 }
 
 void check_bricks(const gpu::Device& device, const Volume& volume, const BrickPlan& plan,
@@ -145,21 +155,16 @@ Grid::Grid(const gpu::Device& device, const Series& series, uint32_t max_brick_s
     format_.minmax_bytes = minmax_bytes(info_, format_.stored);
     format_.sampled_on_gpu =
         first.field && first.bytes.span().empty() && can_sample_on_gpu(device, format_.stored);
-    format_.in_buffer = can_load(device, format_);
+    use_buffer(device, format_, info_);
     steps_ = std::make_unique<Steps>(device, series, first, format_, step_bytes);
 
     using Memory = gpu::Buffer::Memory;
     info_buffer_ = gpu::Buffer(device, sizeof(info_), Memory::device, "the grid's description");
     frame_buffer_ =
         gpu::Buffer(device, sizeof(shared::FrameInfo), Memory::device, "the frame's description");
-    step_ = &steps_->first();
-    if (format_.in_buffer) {
-        const VkSubresourceLayout layout = step_->bricks[0].layout();
-        info_.voxels.w = uint32_t(layout.rowPitch / format_.stored.bytes());
-        info_.brick_cells.w = uint32_t(layout.depthPitch / format_.stored.bytes());
-    }
     make_scene_layout();
     make_pipelines();
+    step_ = &steps_->first();
     gpu::run_once(device_, [&](gpu::Commands& commands) { begin_frame(commands, {}); });
     building_ = false;
 }
@@ -266,9 +271,8 @@ VkDescriptorSet Grid::make_set(gpu::Commands& commands) const {
     const std::array uniforms{VkDescriptorBufferInfo{frame_buffer_.handle(), 0, VK_WHOLE_SIZE},
                               VkDescriptorBufferInfo{info_buffer_.handle(), 0, VK_WHOLE_SIZE}};
     const VkDescriptorBufferInfo minmax{step_->minmax.handle(), 0, VK_WHOLE_SIZE};
-    VkDescriptorBufferInfo voxels = minmax;
-    if (format_.in_buffer)
-        voxels = {step_->bricks[0].buffer(), step_->bricks[0].layout().offset, VK_WHOLE_SIZE};
+    const VkDescriptorBufferInfo voxels{
+        format_.in_buffer ? step_->bricks[0].buffer() : minmax.buffer, 0, VK_WHOLE_SIZE};
     const VkDescriptorImageInfo sampler{.sampler = sampler_.handle()};
     // Every slot of the array must hold an image: those without a brick repeat the first.
     std::array<VkDescriptorImageInfo, shared::MAX_BRICKS> images;

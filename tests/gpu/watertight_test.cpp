@@ -26,7 +26,8 @@ constexpr uint32_t SNAPPED = 1;  // as on a GPU
 
 class Counting {
 public:
-    // `sums`: lists are made by sums across subgroups, whatever the device prefers.
+    // `sums`: lists are made by many threads and sums across subgroups, as on GPUs; else by few, as
+    // on CPUs.
     Counting(const gpu::Device& device, const Volume& volume, Size size, bool sums)
         : grid_(device, series_of({&volume, 1}), 0, 0),
           culling_(grid_, make_depth_pyramid(grid_), 1, /* two_sizes= */ true),
@@ -49,7 +50,9 @@ public:
             rasterize_large_counting};
         for (size_t i = 0; i < code.size(); ++i)
             pipelines_[i] = gpu::Pipeline::compute(
-                device, grid_.pipeline_info("counting", bindings, 12, {/* CLIPPED= */ 0, SNAPPED}),
+                device,
+                grid_.pipeline_info("counting", bindings, 12,
+                                    {/* CLIPPED= */ 0, SNAPPED, sums ? 128u : 8u}),
                 code[i]);
         gpu::run_once(device,
                       [&](gpu::Commands& commands) { commands.discard_to_general(counts_); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The compute rasterizer: blocks to triangles to depth in one compute shader; no mesh shaders, no
 // graphics queue. Depth is kept by a 32-bit atomic maximum of the float's bits.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -69,10 +70,11 @@ private:
         if (pipeline) return pipeline;
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
                                    Kind::image};
-        const bool snapped = !grid_.device().is_cpu();
+        const bool cpu = grid_.device().is_cpu();
+        const uint32_t threads = cpu ? std::max(8u, grid_.device().info().subgroup_size) : 128;
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
-            grid_.pipeline_info("rasterize", bindings, sizeof(Push), {clipped, snapped}),
+            grid_.pipeline_info("rasterize", bindings, sizeof(Push), {clipped, !cpu, threads}),
             code(numbered, large));
         return pipeline;
     }

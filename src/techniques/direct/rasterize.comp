@@ -23,10 +23,9 @@
 #include "techniques/direct/list.glsl"
 #include "techniques/direct/drawn.glsl"
 
-#ifndef THREADS
-#define THREADS 128
-#endif
-layout(local_size_x = THREADS) in;
+// CPU drivers save and restore all that a thread knows at each barrier: fewer threads are faster.
+layout(local_size_x = 128, local_size_x_id = 3) in;
+const uint THREADS = gl_WorkGroupSize.x;
 
 // Marching cubes: of each case's five possible triangles, where the corners' vertices are
 // (corner_vertex); in the first one, bits 29..31, how many there are.
@@ -94,34 +93,52 @@ shared ivec2 origin;  // a pixel that a corner of the block lies in
 #define RESERVE(total, count, first) first = atomicAdd(total, count);
 #endif
 
-// A row of nine corners a thread: their values, all fetches on their way before the first one's
-// result is waited for, and their signs.
+// The value of a voxel in the word that holds it.
+float unpack(uint word, uint x) {
+    if (VOXEL_BITS == 32) return uintBitsToFloat(word);
+    const uint place = x % VALUES_OF_WORD;
+    return float(bitfieldExtract(word, int(VOXEL_BITS % 32 * place), int(VOXEL_BITS)));
+}
+
+// The words of the row of nine voxels from `start` on, of which `last` is the last one's number in
+// the volume: what follows is any value. All fetches are on their way before the first one's result
+// is waited for.
+void load_row(Brick brick, ivec3 start, int last, out uint words[ROW_WORDS]) {
+#ifndef BRICKED
+    if (VOXEL_FORMAT >= VOXELS_IN_BUFFER) {
+        const uint index = voxel_index(uvec3(start)) / VALUES_OF_WORD;
+        [[unroll]] for (uint i = 0; i < ROW_WORDS; ++i)
+            words[i] = voxels_32[min(index + i, voxels_32.length() - 1)];
+        return;
+    }
+#endif
+    float loaded[9];
+    [[unroll]] for (int x = 0; x < 9; ++x)
+        loaded[x] = voxel(brick, start + ivec3(min(x, last), 0, 0));
+    [[unroll]] for (uint x = 0; x < 9; ++x) {
+        const uint value = VOXEL_BITS == 32 ? floatBitsToUint(loaded[x]) : uint(loaded[x]);
+        const uint place = x % VALUES_OF_WORD, i = x / VALUES_OF_WORD;
+        words[i] = place == 0 ? value : words[i] | value << VOXEL_BITS % 32 * place;
+    }
+}
+
+// A row of nine corners a thread: their values and their signs.
 void load_rows(uvec3 first, float iso) {
     const Brick brick = brick_of(ivec3(first));
     const int last = int(grid.voxels.x) - 1 - int(first.x);
     for (uint row = gl_LocalInvocationIndex; row < ROWS; row += THREADS) {
-        const ivec3 start = clamp_to_volume(ivec3(first + uvec3(0, row % 9, row / 9)));
-        float loaded[9];
-        [[unroll]] for (int x = 0; x < 9; ++x)
-            loaded[x] = voxel(brick, start + ivec3(min(x, last), 0, 0));
-        uint bits = 0, word = 0;
-        [[unroll]] for (uint x = 0; x < 9; ++x) {
-            bits |= (loaded[x] >= iso ? 1u : 0u) << x;
-            const uint value = VOXEL_BITS == 32 ? floatBitsToUint(loaded[x]) : uint(loaded[x]);
-            const uint place = x % VALUES_OF_WORD;
-            word = place == 0 ? value : word | value << VOXEL_BITS % 32 * place;
-            if (place == VALUES_OF_WORD - 1 || x == 8)
-                values[ROW_WORDS * row + x / VALUES_OF_WORD] = word;
-        }
+        uint words[ROW_WORDS], bits = 0;
+        load_row(brick, clamp_to_volume(ivec3(first + uvec3(0, row % 9, row / 9))), last, words);
+        [[unroll]] for (uint x = 0; x < 9; ++x)
+            bits |= (unpack(words[x / VALUES_OF_WORD], x) >= iso ? 1u : 0u) << x;
+        [[unroll]] for (uint i = 0; i < ROW_WORDS; ++i)
+            values[ROW_WORDS * row + i] = words[i];
         signs[row] = bits;
     }
 }
 
 float value_at(uint row, uint x) {
-    const uint word = values[ROW_WORDS * row + x / VALUES_OF_WORD];
-    if (VOXEL_BITS == 32) return uintBitsToFloat(word);
-    const uint place = x % VALUES_OF_WORD;
-    return float(bitfieldExtract(word, int(VOXEL_BITS % 32 * place), int(VOXEL_BITS)));
+    return unpack(values[ROW_WORDS * row + x / VALUES_OF_WORD], x);
 }
 
 // The corner rows of a cell row, which begins at this one.

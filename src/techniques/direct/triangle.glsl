@@ -4,8 +4,8 @@
 // one thread a triangle and from several.
 
 // Threads that take a large triangle together, and the patch of pixels that they take at once.
-const uint TEAM = 32;
-const uvec2 TEAM_SIDES = uvec2(8, 4);
+const uint TEAM = THREADS < 32 ? THREADS : 32;
+const uvec2 TEAM_SIDES = uvec2(8, TEAM / 8);
 
 struct Vertex {
     ivec2 pixel;     // 1/256 of a pixel, from the middle of the origin, a pixel
