@@ -95,7 +95,7 @@ def read_raw(path):
 
 def measure_isorast(options, volume, name):
     """What isorast-bench says of both cases: {(case, size, way): mean wall ms}, and the shots of each case."""
-    counts = {"sweep": ["isovalue-sweep", "--sweep", f"0.2,0.8,{options.frames // 2}", "--frames", 4],
+    counts = {"sweep": ["isovalue-sweep", "--sweep", f"0.2,0.8,{options.frames // 2 + 1}", "--frames", 4],
               "orbit": ["motion", "--degrees", 4, "--frames", 2 * options.frames]}
     times, shots, reports = {}, {}, {}
     for case, words in counts.items():
@@ -224,7 +224,7 @@ def measure_vtk(options, path, shots, name):
     times, agreement, driver = {}, {}, ""
     for (case, size), frames in shots.items():
         # The first and the last of the way there: both ends of the isovalues, and of the orbit.
-        compared = [0, len(frames) // 2 - 1]
+        compared = [0, len(frames) // 2]
         pictures = [f"{name}-{case}-{size}-{at}" for at in compared]
         truth = [isorast_silhouette(options, path, size, frames[at], picture)
                  for at, picture in zip(compared, pictures)]

@@ -145,17 +145,20 @@ def draw_sweep(plt, results):
                       color=color, mfc="white", ms=8, mew=1.4, zorder=3)
             if not rows:
                 continue
-            xs, ys = [row["isovalue"] for row in rows], [median_ms([row]) for row in rows]
-            axis.fill_between(xs, ys, [p95_ms([row]) for row in rows], color=color, alpha=0.15, lw=0)
-            axis.plot(xs, ys, **{**look_of(results, way), "marker": None})
-            series[way] = (xs, ys)
+            # There, and back again.
+            for towards, style in (("higher", "-"), ("lower", ":")):
+                some = sorted((row for row in rows if row["towards"] == towards), key=lambda row: row["isovalue"])
+                xs, ys = [row["isovalue"] for row in some], [median_ms([row]) for row in some]
+                axis.fill_between(xs, ys, [p95_ms([row]) for row in some], color=color, alpha=0.15, lw=0)
+                axis.plot(xs, ys, **{**look_of(results, way), "marker": None, "linestyle": style})
+                series.setdefault(way, (xs, ys))
         axis.set_title(title_of(volume))
         axis.set_xlabel("isovalue, share of the value range")
         if axis is axes[-1]:
             label_ends(axis, [(xs[-1], ys[-1], way, color_of(way)) for way, (xs, ys) in series.items()])
     axes[0].set_ylabel("draw time, ms")
     save(figure, results, "A new isovalue each frame",
-         "median, shaded to the 95th percentile; diamonds: the isovalue held")
+         "median, shaded to the 95th percentile; dotted: on the way down again; diamonds: held")
 
 
 def draw_stereo(plt, results):

@@ -67,7 +67,8 @@ Sequences time_series(Contest& contest, const Subject& subject, const Settings& 
     return sequences;
 }
 
-// A new isovalue each frame, up and down again; and some of them held.
+// A new isovalue each frame, up and down again, which are not alike: a surface that shrinks
+// uncovers what lies behind it. And some of them held.
 Sequences isovalue_sweep(Contest& contest, const Subject& subject, const Settings& settings) {
     const auto [lowest, highest] = contest.first().value_range();
     const auto value_at = [&](double share) { return lowest + share * (highest - lowest); };
@@ -80,15 +81,20 @@ Sequences isovalue_sweep(Contest& contest, const Subject& subject, const Setting
             const double along = count > 1 ? double(i) / double(count - 1) : 0;
             const double share = std::lerp(settings.sweep[0], settings.sweep[1], along);
             frame.isovalues = {value_at(share)};
-            sweep.rows.push_back({{"isovalue", share}});
+            sweep.rows.push_back({{"isovalue", share}, {"towards", "higher"}});
             sweep.shots.push_back({frame, i});
         }
-        for (size_t i = count; i-- > 0;)
-            sweep.shots.push_back(sweep.shots[i]);
+        // Each end once: every frame has another isovalue than the one before.
+        for (size_t i = count; i-- > 2;) {
+            sweep.shots.push_back({sweep.shots[i - 1].frame, sweep.rows.size()});
+            sweep.rows.push_back(
+                {{"isovalue", sweep.rows[i - 1]["isovalue"]}, {"towards", "lower"}});
+        }
         sweep.compared = {0, count / 2, count - 1};
         sequences.push_back(sweep);
         for (const size_t i : some_of(count, HELD_ISOVALUES)) {
-            sequences.push_back(still("held", sweep.shots[i].frame, sweep.rows[i]));
+            const Json held{{"isovalue", sweep.rows[i]["isovalue"]}};
+            sequences.push_back(still("held", sweep.shots[i].frame, held));
             sequences.back().compared.clear();
         }
     }

@@ -6,7 +6,7 @@ import pathlib
 
 SIZES = {(1280, 720): "720p", (1920, 1080): "1080p", (2560, 1440): "1440p", (3840, 2160): "4K",
          (7680, 4320): "8K"}
-CULLING_PASSES = ("cull", "depth pyramid", "raster proxies", "find first visible", "list blocks")
+CULLING_PASSES = ("cull", "depth pyramid", "raster proxies", "find uncovered", "list blocks")
 
 
 def size_name(size):
@@ -200,10 +200,11 @@ def sweep_table(results, ratios_only):
         if not sweep:
             continue
         worst = max((row for row in sweep if row["way"] == sweep[0]["way"]),
-                    key=lambda row: row["frame"]["median_ms"])["isovalue"]
-        columns = [results.medians(volume=volume, sequence="sweep"),
-                   results.medians(volume=volume, sequence="sweep", isovalue=worst)]
-        names = ["mean of the sweep", f"slowest isovalue, {worst:.3g}"]
+                    key=lambda row: row["frame"]["median_ms"])
+        at_worst = {key: worst[key] for key in ("isovalue", "towards")}
+        columns = [results.medians(volume=volume, sequence="sweep", **more)
+                   for more in ({}, {"towards": "higher"}, {"towards": "lower"}, at_worst)]
+        names = ["mean of the sweep", "to higher isovalues", "to lower ones", f"slowest, {worst['isovalue']:.3g}"]
         print_times(results, title_of(volume), names, columns, ratios_only)
         lines = []
         for way in results.ways:

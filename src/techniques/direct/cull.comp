@@ -4,7 +4,7 @@
 // and the indirect arguments to draw it. Culling is in two passes (Kreskowski 2022, section 3.5 and
 // figure 2): blocks that the last frame saw are drawn first; then those of all others that they do
 // not hide: as raster proxies have found before, or, HIZ, by a depth pyramid, and once more, finer,
-// for what that leaves.
+// for what that leaves. In between, after a change, those that rays hit where nothing is drawn yet.
 // variant cull_hiz: -DHIZ
 #include "shaders/scene.glsl"
 #include "techniques/direct/limits.glsl"
@@ -56,7 +56,7 @@ shared uint candidates[CULL_GROUPS * GROUP_BLOCKS];  // group << 5 | place
 shared uint candidate_total;
 #endif
 
-// True if an eye may see the block. `seen`: in the last frame, or by the raster proxies. `look`:
+// True if an eye may see the block. `seen`: in the last frame, or by raster proxies or rays. `look`:
 // only if a closer look finds it in sight.
 bool is_selected(uvec3 block, bool seen, out bool large, out bool look) {
     large = look = false;
@@ -119,7 +119,8 @@ void main() {
 #ifdef HIZ
             const uint marks = seen_blocks[group.x];
 #else
-            const uint marks = SELECT == TESTED ? tested_blocks[group.x] : seen_blocks[group.x];
+            const uint marks = SELECT == TESTED ? tested_blocks[group.x] & ~seen_blocks[group.x]
+                                                : seen_blocks[group.x];
 #endif
             bool large, look;
             if ((group.y >> place & 1) != 0 &&

@@ -8,7 +8,7 @@
 #include "cull_comp.h"
 #include "cull_hiz.h"
 #include "find_active_comp.h"
-#include "find_first_visible_comp.h"
+#include "find_uncovered_comp.h"
 
 namespace isorast {
 
@@ -21,10 +21,15 @@ using Memory = gpu::Buffer::Memory;
 // Most workgroups along one axis of a dispatch that every device allows.
 constexpr uint32_t MAX_ROW = 65535;
 constexpr uint32_t ZERO = 0;
+// Of each surface: of seen (or all), of uncovered, and of unseen blocks.
+constexpr uint32_t LISTS = 3;
 
-// With fewer blocks than this (a volume of 256^3), guessing what is visible after a cut costs more
-// than drawing all blocks once.
+// With fewer blocks than this (a volume of 256^3), guessing what is visible costs more than drawing
+// all blocks once.
 constexpr uint32_t WORTH_GUESSING = 1 << 15;
+
+// Rays that guess: one in a square of so many pixels a side, everywhere and in what is uncovered.
+constexpr int32_t FEW = 8, MANY = 2;
 
 // A turn or a way beyond which the last frame's visible blocks say little about this frame's.
 constexpr double CUT_DEGREES = 15, CUT_DISTANCE = 0.25;  // of the distance to the target
@@ -46,8 +51,7 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     const uint64_t quartets = uint64_t{shared::QUARTETS} * groups;
     draw_count_ = uint32_t((quartets + shared::DRAW_QUARTETS - 1) / shared::DRAW_QUARTETS);
     drawn_blocks_ = gpu::Buffer(device, 4 * quartets, Memory::device, "the list of drawn blocks");
-    // Of each surface, for seen and for unseen blocks.
-    const uint64_t draws = uint64_t{2} * shared::MAX_SURFACES * sizes_ * draw_count_;
+    const uint64_t draws = uint64_t{LISTS} * shared::MAX_SURFACES * sizes_ * draw_count_;
     draws_ = gpu::Buffer(device, sizeof(shared::Draw) * draws, Memory::device, "draw arguments");
     counters_ = gpu::Buffer(device, sizeof(shared::Counters), Memory::device, "counters");
     for (gpu::Buffer& visible : visible_)
@@ -61,20 +65,24 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     };
     find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
     const std::vector lists(6, Kind::buffer);
-    for (uint32_t which = 0; which < select_.size(); ++which)
-        select_[which] = make("cull", lists, 12, {two_sizes, which}, cull_comp);
-    if (occlusion_->kind() == Occlusion::hiz)
-        select_[size_t(Select::unseen)] = make("cull", lists, 12, {two_sizes}, cull_hiz);
+    const bool hiz = occlusion_->kind() == Occlusion::hiz;
+    const uint32_t all = 0, seen = 1, tested = 2;  // as in cull.comp
+    select_[size_t(Select::all)] = make("cull", lists, 12, {two_sizes, all}, cull_comp);
+    select_[size_t(Select::seen)] = make("cull", lists, 12, {two_sizes, seen}, cull_comp);
+    select_[size_t(Select::unseen)] = hiz ? make("cull", lists, 12, {two_sizes}, cull_hiz)
+                                          : make("cull", lists, 12, {two_sizes, tested}, cull_comp);
+    if (grid.info().blocks.w < WORTH_GUESSING) return;
+    guesses_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
+    select_[size_t(Select::uncovered)] = make("cull", lists, 12, {two_sizes, tested}, cull_comp);
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
-    if (grid.info().blocks.w >= WORTH_GUESSING)
-        find_first_visible_ =
-            make("find first visible", {Kind::buffer}, 0, {/* EXACT= */ 0, filtered},
-                 grid.pick(find_first_visible_comp, find_first_visible_comp_bricked));
+    find_uncovered_ = make("find uncovered", {Kind::buffer, Kind::texture, Kind::buffer}, 8,
+                           {/* EXACT= */ 0, filtered},
+                           grid.pick(find_uncovered_comp, find_uncovered_comp_bricked));
 }
 
 uint64_t Culling::gpu_bytes() const {
     uint64_t bytes = occlusion_->gpu_bytes() + drawn_blocks_.bytes() + draws_.bytes() +
-                     counters_.bytes() + 2 * visible_[0].bytes();
+                     counters_.bytes() + 2 * visible_[0].bytes() + guesses_.bytes();
     for (const auto& list : active_groups_)
         bytes += list.bytes();
     return bytes;
@@ -82,6 +90,7 @@ uint64_t Culling::gpu_bytes() const {
 
 void Culling::find_active(Commands& commands, const std::vector<float>& isovalues) {
     const auto pass = commands.pass("find active");
+    changed_ = true;
     const uint64_t list_bytes = 32 + uint64_t{8} * grid_.info().groups.w;
     while (active_groups_.size() < isovalues.size())
         active_groups_.emplace_back(grid_.device(), list_bytes, Memory::device,
@@ -127,30 +136,53 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     seen_ = 1 - seen_;
     target.visible_blocks = &visible_[1 - seen_];
     commands.fill(visible_[1 - seen_], 0);
+    const uint64_t before = occlusion_->result().bytes();
     occlusion_->fit(target);
     const bool cut = is_cut(frame.camera);
+    if (cut) commands.fill(visible_[seen_], 0);
+    remembered_ =
+        !cut && occlusion_->kind() == Occlusion::hiz && occlusion_->result().bytes() == before;
     last_camera_ = frame.camera;
-    if (cut) {
-        commands.fill(visible_[seen_], 0);
-        commands.barrier();
-    }
-    if (cut && find_first_visible_) {
-        const auto pass = commands.pass("find first visible");
-        commands.bind(find_first_visible_, {visible_[seen_]});
-        commands.dispatch((frame.size.width + 15) / 16, (frame.size.height + 15) / 16,
-                          frame.eyes());
-    }
+    changed_ |= cut;
+    guessed_ = changed_ && bool(find_uncovered_);
+    changed_ = false;
     commands.barrier();
+    if (!guessed_) return;
+    const auto pass = commands.pass("guess visible");
+    guess(commands, frame, target, FEW, visible_[seen_]);
+}
+
+void Culling::guess(Commands& commands, const Frame& frame, const Target& target, int32_t side,
+                    const gpu::Buffer& visible) const {
+    const auto groups = [&](uint32_t pixels) { return (pixels / side + 7) / 8; };
+    struct Push {
+        int32_t side;
+        uint32_t remembered;
+    };
+    commands.bind(find_uncovered_, {visible, target.depth, occlusion_->result()});
+    commands.push(Push{side, remembered_ ? 1u : 0u});
+    commands.dispatch(groups(frame.size.width), groups(frame.size.height), frame.eyes());
+    commands.barrier();
+}
+
+bool Culling::find_uncovered(Commands& commands, const Frame& frame, const Target& target) {
+    if (!guessed_) return false;
+    const auto pass = commands.pass("find uncovered");
+    commands.copy(visible_[seen_], 0, guesses_, 0, guesses_.bytes());
+    commands.barrier();
+    guess(commands, frame, target, MANY, guesses_);
+    return true;
 }
 
 void Culling::select(Commands& commands, uint32_t surface, Select which) {
     struct Push {
         uint32_t first_draw, draws_of_list, workgroups;
     };
-    first_draw_ = (2 * surface + (which == Select::unseen ? 1 : 0)) * sizes_ * draw_count_;
+    const bool uncovered = which == Select::uncovered, unseen = which == Select::unseen;
+    first_draw_ = (LISTS * surface + (uncovered ? 1 : unseen ? 2 : 0)) * sizes_ * draw_count_;
     commands.bind(select_[size_t(which)],
-                  {active_groups_[surface], draws_, drawn_blocks_, counters_, visible_[seen_],
-                   which == Select::unseen ? occlusion_->result() : visible_[seen_]});
+                  {active_groups_[surface], draws_, drawn_blocks_, counters_,
+                   unseen ? drawn() : visible_[seen_], unseen ? occlusion_->result() : drawn()});
     commands.push(Push{first_draw_, draw_count_, workgroups_});
     commands.dispatch_indirect(active_groups_[surface], 0);
     commands.barrier();

@@ -23,14 +23,18 @@ public:
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
 
     // Once a frame, before select(). The blocks marked visible in the last frame become the seen
-    // ones; after a cut, a coarse march guesses them in large volumes. The shading pass marks this
-    // frame's in target.visible_blocks.
+    // ones, unless the camera is another (a cut). After that, or with another isovalue or time
+    // step, a few rays add what they hit. The shading pass marks this frame's visible blocks in
+    // target.visible_blocks.
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
-    enum class Select : uint32_t { all, seen, unseen };
+    enum class Select : uint32_t { all, seen, uncovered, unseen };
+    // Before select(uncovered): after such a change, many rays where seen blocks cover nothing.
+    // False if this frame does without.
+    bool find_uncovered(gpu::Commands& commands, const Frame& frame, const Target& target);
     // Before select(unseen): looks at the depth drawn so far, once; and tests a surface's blocks.
     void look(gpu::Commands& commands, const Target& target) { occlusion_->look(commands, target); }
     void test(gpu::Commands& commands, uint32_t surface, const Target& target) {
-        occlusion_->test(commands, active_groups_[surface], visible_[seen_], target);
+        occlusion_->test(commands, active_groups_[surface], drawn(), target);
     }
     // Lists a surface's blocks: those that are small in the picture, and those that are large.
     enum class Size : uint32_t { small, large };
@@ -49,16 +53,25 @@ public:
 private:
     void find_active(gpu::Commands& commands, uint32_t surface, float isovalue);
     bool is_cut(const Camera& camera) const;
+    // Marks what rays hit, one in each square of so many pixels a side.
+    void guess(gpu::Commands& commands, const Frame& frame, const Target& target, int32_t side,
+               const gpu::Buffer& visible) const;
+    // The blocks drawn before select(unseen).
+    const gpu::Buffer& drawn() const { return guessed_ ? guesses_ : visible_[seen_]; }
 
     const Grid& grid_;
     uint32_t workgroups_, sizes_, draw_count_ = 0, first_draw_ = 0;
     std::unique_ptr<OcclusionTest> occlusion_;
-    gpu::Pipeline find_active_, find_first_visible_;
-    std::array<gpu::Pipeline, 3> select_;     // one for each Select
+    gpu::Pipeline find_active_, find_uncovered_;
+    std::array<gpu::Pipeline, 4> select_;     // one for each Select
     std::vector<gpu::Buffer> active_groups_;  // one for each surface
     gpu::Buffer drawn_blocks_, draws_, counters_;
     std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
     uint32_t seen_ = 0;                   // which of the two is last frame's
+    gpu::Buffer guesses_;                 // the seen blocks and the uncovered ones
+    bool changed_ = false;                // the surface or the camera, since the last frame
+    bool guessed_ = false;                // this frame has guesses_
+    bool remembered_ = false;             // the depth pyramid still is of the last frame's picture
     std::optional<Camera> last_camera_;   // of the frame that marked visible blocks
 };
 

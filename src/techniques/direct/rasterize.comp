@@ -172,7 +172,9 @@ uint crossed_edges(CellRow row, uint y, uint z, Slab slab, ivec3 left, uint cell
 // Lists the slab's vertices and its occupied cells.
 void list_rows(Slab slab, ivec3 left) {
     const uint cells_x = (1u << clamp(left.x, 0, 8)) - 1;
-    for (uint row = gl_LocalInvocationIndex; row < ROWS; row += THREADS) {
+    const uint first_layer = slab.first / 8, end_layer = (slab.first + slab.count + 7) / 8 + 1;
+    for (uint row = 9 * first_layer + gl_LocalInvocationIndex; row < 9 * end_layer;
+         row += THREADS) {
         const uint y = row % 9, z = row / 9;
         const CellRow corners = cell_row(row);
         uint crossed = crossed_edges(corners, y, z, slab, left, cells_x);
