@@ -176,6 +176,8 @@ TEST_P(Culling, AGuessAfterAChangeChangesNoBitAndAWarmFrameDrawsLess) {
     f.stereo.mode = StereoMode::layers;
     f.isovalues = {0.45};
     EXPECT_TRUE(changes_no_bit());
+    f.camera = orbit(volume, 40, 24);  // fast, but no cut
+    EXPECT_TRUE(changes_no_bit());
 }
 
 TEST_P(Culling, HoldsForForwardShadingAndSeveralSurfaces) {

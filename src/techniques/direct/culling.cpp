@@ -31,8 +31,9 @@ constexpr uint32_t WORTH_GUESSING = 1 << 15;
 // Rays that guess: one in a square of so many pixels a side, everywhere and in what is uncovered.
 constexpr int32_t FEW = 8, MANY = 2;
 
-// A turn or a way beyond which the last frame's visible blocks say little about this frame's.
-constexpr double CUT_DEGREES = 15, CUT_DISTANCE = 0.25;  // of the distance to the target
+// A turn or a way, as a share of the distance to the target, beyond which the last frame's visible
+// blocks say little about this frame's; and beyond which looking for what is uncovered pays.
+constexpr double CUT_DEGREES = 15, CUT_DISTANCE = 0.25, FAST_DEGREES = 2, FAST_DISTANCE = 0.035;
 
 glm::dvec3 to_vec(const std::array<double, 3>& v) {
     return {v[0], v[1], v[2]};
@@ -117,14 +118,14 @@ void Culling::find_active(Commands& commands, uint32_t surface, float isovalue) 
     commands.dispatch(row, (workgroups + row - 1) / row);
 }
 
-bool Culling::is_cut(const Camera& camera) const {
+bool Culling::has_moved(const Camera& camera, double degrees, double distance) const {
     if (!last_camera_ || camera.orthographic != last_camera_->orthographic) return true;
     const glm::dvec3 now = to_vec(camera.target) - to_vec(camera.position);
     const glm::dvec3 before = to_vec(last_camera_->target) - to_vec(last_camera_->position);
     const double moved = glm::length(to_vec(camera.position) - to_vec(last_camera_->position));
     const double cosine = glm::dot(glm::normalize(now), glm::normalize(before));
-    return cosine < std::cos(glm::radians(CUT_DEGREES)) ||
-           moved > CUT_DISTANCE * std::max(glm::length(now), glm::length(before));
+    return cosine < std::cos(glm::radians(degrees)) ||
+           moved > distance * std::max(glm::length(now), glm::length(before));
 }
 
 void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target) {
@@ -138,16 +139,17 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     commands.fill(visible_[1 - seen_], 0);
     const uint64_t before = occlusion_->result().bytes();
     occlusion_->fit(target);
-    const bool cut = is_cut(frame.camera);
+    const bool cut = has_moved(frame.camera, CUT_DEGREES, CUT_DISTANCE);
+    const bool fast = has_moved(frame.camera, FAST_DEGREES, FAST_DISTANCE);
     if (cut) commands.fill(visible_[seen_], 0);
     remembered_ =
         !cut && occlusion_->kind() == Occlusion::hiz && occlusion_->result().bytes() == before;
     last_camera_ = frame.camera;
-    changed_ |= cut;
-    guessed_ = changed_ && bool(find_uncovered_);
+    const bool changed = changed_ || cut;
+    guessed_ = (changed || fast) && bool(find_uncovered_);
     changed_ = false;
     commands.barrier();
-    if (!guessed_) return;
+    if (!guessed_ || !changed) return;
     const auto pass = commands.pass("guess visible");
     guess(commands, frame, target, FEW, visible_[seen_]);
 }

@@ -28,8 +28,8 @@ public:
     // target.visible_blocks.
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
     enum class Select : uint32_t { all, seen, uncovered, unseen };
-    // Before select(uncovered): after such a change, many rays where seen blocks cover nothing.
-    // False if this frame does without.
+    // Before select(uncovered): after such a change, and when the camera moves fast, many rays
+    // where seen blocks cover nothing. False if this frame does without.
     bool find_uncovered(gpu::Commands& commands, const Frame& frame, const Target& target);
     // Before select(unseen): looks at the depth drawn so far, once; and tests a surface's blocks.
     void look(gpu::Commands& commands, const Target& target) { occlusion_->look(commands, target); }
@@ -52,7 +52,7 @@ public:
 
 private:
     void find_active(gpu::Commands& commands, uint32_t surface, float isovalue);
-    bool is_cut(const Camera& camera) const;
+    bool has_moved(const Camera& camera, double degrees, double distance) const;
     // Marks what rays hit, one in each square of so many pixels a side.
     void guess(gpu::Commands& commands, const Frame& frame, const Target& target, int32_t side,
                const gpu::Buffer& visible) const;

@@ -169,25 +169,32 @@ uint crossed_edges(CellRow row, uint y, uint z, Slab slab, ivec3 left, uint cell
                                              (here || below ? corners_x << 17 : 0));
 }
 
+// A thread's first corner row in a slab, and what its rows end before.
+uint first_row(Slab slab) { return 9 * (slab.first / 8) + gl_LocalInvocationIndex; }
+uint end_row(Slab slab) { return 9 * ((slab.first + slab.count + 7) / 8 + 1); }
+
+// The edges of a row's vertices, up to the vertex `end`.
+void list_row(uint row, uint crossed, uint end) {
+    for (; crossed != 0; crossed ^= 1u << findMSB(crossed))
+        vertex_pixels[--end] = row << 5 | findMSB(crossed);
+}
+
 // Lists the slab's vertices and its occupied cells.
 void list_rows(Slab slab, ivec3 left) {
     const uint cells_x = (1u << clamp(left.x, 0, 8)) - 1;
-    const uint first_layer = slab.first / 8, end_layer = (slab.first + slab.count + 7) / 8 + 1;
-    for (uint row = 9 * first_layer + gl_LocalInvocationIndex; row < 9 * end_layer;
-         row += THREADS) {
+    for (uint row = first_row(slab); row < end_row(slab); row += THREADS) {
         const uint y = row % 9, z = row / 9;
         const CellRow corners = cell_row(row);
-        uint crossed = crossed_edges(corners, y, z, slab, left, cells_x);
+        const uint crossed = crossed_edges(corners, y, z, slab, left, cells_x);
         uint cells = in_slab(slab, y, z, left) ? occupied_cells(corners) & cells_x : 0;
         const uint counts = bitCount(crossed) | bitCount(cells) << 16;
         uint first;
         RESERVE(row_totals, counts, first)
         rows[row] = uvec2(crossed, first & 0xffffu);
         const uint end = first + counts;
-        uint vertex = end & 0xffffu, cell = end >> 16;
-        if (max(vertex, cell) > MAX_LISTED) continue;  // too many, see fits()
-        for (; crossed != 0; crossed ^= 1u << findMSB(crossed))
-            vertex_pixels[--vertex] = row << 5 | findMSB(crossed);
+        uint cell = end >> 16;
+        if (max(end & 0xffffu, cell) > MAX_LISTED) continue;  // too many, see fits()
+        list_row(row, crossed, end & 0xffffu);
         for (; cells != 0; cells ^= 1u << findMSB(cells))
             vertex_depths[--cell] = z << 6 | y << 3 | findMSB(cells);
     }
@@ -279,6 +286,14 @@ void find_origin(uint eye, uvec3 first) {
         origin = ivec2(to_screen(frame.eyes[eye].clip_from_voxel * vec4(first, 1.0)).xy);
 }
 
+// The vertices once more, for another eye.
+void list_again(Slab slab, uint eye, uvec3 first) {
+    for (uint row = first_row(slab); row < end_row(slab); row += THREADS)
+        list_row(row, rows[row].x, rows[row].y + bitCount(rows[row].x));
+    find_origin(eye, first);
+    barrier();
+}
+
 // On the grid of 1/256 pixels, a vertex of a small block lies less than 128 pixels from its origin:
 // two times 16 bits.
 void project_vertices(uint eye, uvec3 first, float iso) {
@@ -320,23 +335,29 @@ void draw_block(uvec3 first, float iso) {
     load_rows(first, iso);
     Slab slab = Slab(0, CELL_ROWS);
     while (slab.first < CELL_ROWS) {
-        bool drawn = true;
-        for (uint eye = 0; eye < frame.counts.x && drawn; ++eye) {
-            if (gl_LocalInvocationIndex == 0) row_totals = triangle_total = 0;
+        if (gl_LocalInvocationIndex == 0) row_totals = triangle_total = 0;
 #ifndef LARGE
-            find_origin(eye, first);
+        find_origin(0, first);
 #endif
-            barrier();
-            list_rows(slab, left);
-            barrier();
-            list_triangles();
-            barrier();
-            drawn = fits();
-            if (drawn) rasterize(eye, first, iso);
+        barrier();
+        list_rows(slab, left);
+        barrier();
+        list_triangles();
+        barrier();
+        const bool all = fits();
+        for (uint eye = 0; eye < frame.counts.x && all; ++eye) {
+#ifndef LARGE
+            if (eye > 0) list_again(slab, eye, first);
+#endif
+            rasterize(eye, first, iso);
             barrier();
         }
-        if (drawn) slab.first += slab.count;
-        else slab.count /= 2;
+        if (all) {
+            slab.first += slab.count;
+        } else {
+            slab.count /= 2;
+            barrier();
+        }
     }
 }
 
