@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 tests=(--output-on-failure --parallel 2)
 case "${1:-}" in
     "")
-        tests+=(--exclude-regex '^gpu_quick$')  # gpu is all of it
+        tests+=(--exclude-regex '^gpu_quick')  # gpu is all of it
         ;;
     --quick)
         export ISORAST_QUICK=1

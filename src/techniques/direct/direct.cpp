@@ -3,8 +3,8 @@
 // Volumes", 2022. Blocks that the isovalue crosses are listed once an isovalue (find active). Every
 // frame (figure 2), those that the last frame saw are extracted and rasterized at once; then those
 // that they do not hide. When the camera jumps or is fast, or with another isovalue or time
-// step, what the last frame saw says little: rays through what it leaves uncovered find more to draw
-// first. Nothing is stored.
+// step, what the last frame saw says little: rays through what it leaves uncovered find more to
+// draw first. Nothing is stored.
 #include <isorast/error.h>
 
 #include <array>
