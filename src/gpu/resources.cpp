@@ -50,23 +50,27 @@ void Buffer::swap(Buffer& other) noexcept {
 
 namespace {
 
+VkImageCreateInfo create_info(const ImageInfo& info) {
+    return {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+            .flags = info.as_bits ? VkImageCreateFlags{VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT} : 0u,
+            .imageType = info.is_3d ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
+            .format = info.format,
+            .extent = info.extent,
+            .mipLevels = 1,
+            .arrayLayers = info.layers,
+            .samples = VK_SAMPLE_COUNT_1_BIT,
+            .tiling = info.linear ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL,
+            .usage = info.usage};
+}
+
 VkImage create_image(const Device& device, const ImageInfo& info) {
+    VkImageCreateInfo create = create_info(info);
     const std::array families{device.queue_family(), device.upload_family()};
-    const bool shared = info.uploaded && families[0] != families[1];
-    const VkImageCreateInfo create{
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .flags = info.as_bits ? VkImageCreateFlags{VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT} : 0u,
-        .imageType = info.is_3d ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
-        .format = info.format,
-        .extent = info.extent,
-        .mipLevels = 1,
-        .arrayLayers = info.layers,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .tiling = info.linear ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL,
-        .usage = info.usage,
-        .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
-        .queueFamilyIndexCount = shared ? uint32_t(families.size()) : 0,
-        .pQueueFamilyIndices = shared ? families.data() : nullptr};
+    if (info.uploaded && families[0] != families[1]) {
+        create.sharingMode = VK_SHARING_MODE_CONCURRENT;
+        create.queueFamilyIndexCount = uint32_t(families.size());
+        create.pQueueFamilyIndices = families.data();
+    }
     VkImage image = VK_NULL_HANDLE;
     VK_CHECK(vkCreateImage(device.handle(), &create, nullptr, &image));
     return image;
@@ -132,13 +136,25 @@ uint64_t Texture::bytes_needed(const Device& device, const ImageInfo& info) {
     return requirements.size;
 }
 
-VkSubresourceLayout Texture::layout_needed(const Device& device, const ImageInfo& info) {
+std::optional<VkSubresourceLayout> Texture::linear_layout(const Device& device, ImageInfo info) {
+    info.linear = true;
+    VkImageFormatProperties most;
+    const VkImageCreateInfo wanted = create_info(info);
+    if (vkGetPhysicalDeviceImageFormatProperties(device.physical(), wanted.format, wanted.imageType,
+                                                 wanted.tiling, wanted.usage, wanted.flags,
+                                                 &most) != VK_SUCCESS ||
+        info.extent.width > most.maxExtent.width || info.extent.height > most.maxExtent.height ||
+        info.extent.depth > most.maxExtent.depth || info.layers > most.maxArrayLayers ||
+        bytes_needed(device, info) > device.limits().maxStorageBufferRange)
+        return {};
     const VkImage image = create_image(device, info);
     const VkImageSubresource all{.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT};
     VkSubresourceLayout layout;
     vkGetImageSubresourceLayout(device.handle(), image, &all, &layout);
     vkDestroyImage(device.handle(), image, nullptr);
-    return layout;
+    const bool whole = layout.offset == 0 && layout.rowPitch % 4 == 0 &&
+                       layout.arrayPitch % 4 == 0 && layout.depthPitch % 4 == 0;
+    return whole ? std::optional(layout) : std::nullopt;
 }
 
 VkImageAspectFlags Texture::aspect() const {

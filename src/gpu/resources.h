@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -71,8 +72,9 @@ public:
 
     // The bytes that such an image needs on the device, without making one.
     static uint64_t bytes_needed(const Device& device, const ImageInfo& info);
-    // How its rows and slices would lie in a buffer, for ImageInfo::linear.
-    static VkSubresourceLayout layout_needed(const Device& device, const ImageInfo& info);
+    // For ImageInfo::linear: how its rows, layers and slices would lie in the buffer, all on whole
+    // words; nothing if the device has no such image, or no buffer as large.
+    static std::optional<VkSubresourceLayout> linear_layout(const Device& device, ImageInfo info);
 
     VkImage handle() const { return image_; }
     VkImageView view() const { return view_; }            // of a volume, or an array of all layers

@@ -75,32 +75,15 @@ BrickPlan plan_for(const gpu::Device& device, const Volume& volume, const Stored
     return plan_bricks(voxels, stored.bytes(), side, device.max_allocation() / 8 * 7);
 }
 
-// Whether the device can have this image with ImageInfo::linear.
-bool can_be_linear(const gpu::Device& device, const gpu::ImageInfo& image) {
-    VkImageFormatProperties most;
-    return vkGetPhysicalDeviceImageFormatProperties(device.physical(), image.format,
-                                                    VK_IMAGE_TYPE_3D, VK_IMAGE_TILING_LINEAR,
-                                                    image.usage, 0, &most) == VK_SUCCESS &&
-           image.extent.width <= most.maxExtent.width &&
-           image.extent.height <= most.maxExtent.height &&
-           image.extent.depth <= most.maxExtent.depth;
-}
-
 // Where the CPU draws, a texture unit is a call, and images lie in rows anyway: shaders fetch
-// voxels from the image's memory if it is one, and a buffer may be so large.
+// voxels from the image's memory if it is one.
 void use_buffer(const gpu::Device& device, StepFormat& format, shared::GridInfo& info) {
     if (!device.is_cpu() || !format.bricks.one()) return;
-    StepFormat linear = format;
-    linear.in_buffer = true;
-    const gpu::ImageInfo image = brick_image(linear, 0);
-    if (!can_be_linear(device, image) ||
-        gpu::Texture::bytes_needed(device, image) > device.limits().maxStorageBufferRange)
-        return;
-    const VkSubresourceLayout layout = gpu::Texture::layout_needed(device, image);
-    if (layout.offset != 0 || layout.rowPitch % 4 != 0 || layout.depthPitch % 4 != 0) return;
-    format = linear;
-    info.voxels.w = uint32_t(layout.rowPitch / format.stored.bytes());
-    info.brick_cells.w = uint32_t(layout.depthPitch / format.stored.bytes());
+    const auto layout = gpu::Texture::linear_layout(device, brick_image(format, 0));
+    if (!layout) return;
+    format.in_buffer = true;
+    info.voxels.w = uint32_t(layout->rowPitch / format.stored.bytes());
+    info.brick_cells.w = uint32_t(layout->depthPitch / format.stored.bytes());
 }
 
 void check_bricks(const gpu::Device& device, const Volume& volume, const BrickPlan& plan,
