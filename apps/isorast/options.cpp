@@ -175,7 +175,7 @@ std::string human_bytes(uint64_t bytes) {
     constexpr const char* UNITS[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
     double size = static_cast<double>(bytes);
     size_t unit = 0;
-    for (; size >= 1024 && unit + 1 < std::size(UNITS); ++unit)
+    for (; size >= 999.5 && unit + 1 < std::size(UNITS); ++unit)
         size /= 1024;
     return unit == 0 ? fmt::format("{} bytes", bytes) : fmt::format("{:.3g} {}", size, UNITS[unit]);
 }

@@ -152,8 +152,7 @@ std::optional<VkSubresourceLayout> Texture::linear_layout(const Device& device, 
     VkSubresourceLayout layout;
     vkGetImageSubresourceLayout(device.handle(), image, &all, &layout);
     vkDestroyImage(device.handle(), image, nullptr);
-    const bool whole = layout.offset == 0 && layout.rowPitch % 4 == 0 &&
-                       layout.arrayPitch % 4 == 0 && layout.depthPitch % 4 == 0;
+    const bool whole = layout.offset == 0 && layout.rowPitch % 4 == 0 && layout.depthPitch % 4 == 0;
     return whole ? std::optional(layout) : std::nullopt;
 }
 

@@ -72,8 +72,8 @@ public:
 
     // The bytes that such an image needs on the device, without making one.
     static uint64_t bytes_needed(const Device& device, const ImageInfo& info);
-    // For ImageInfo::linear: how its rows, layers and slices would lie in the buffer, all on whole
-    // words; nothing if the device has no such image, or no buffer as large.
+    // For ImageInfo::linear, of a volume: how its rows and slices would lie in the buffer, all on
+    // whole words; nothing if the device has no such image, or no buffer as large.
     static std::optional<VkSubresourceLayout> linear_layout(const Device& device, ImageInfo info);
 
     VkImage handle() const { return image_; }
