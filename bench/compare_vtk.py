@@ -306,7 +306,8 @@ def main():
                         help="NAME_WxHxD_uint8.raw; default: a formula")
     parser.add_argument("--sizes", default="1280x720,3840x2160")
     parser.add_argument("--ways", default=WAYS, help="isorast's, as for isorast-bench")
-    parser.add_argument("--vtk-ways", default=",".join(VTK_WAYS), help="the ray cast takes a minute a frame at 3840x2160")
+    parser.add_argument("--vtk-ways", default=",".join(VTK_WAYS),
+                        help="the ray cast takes a minute a frame at 3840x2160")
     parser.add_argument("--side", type=int, default=256, help="of the formula's volume")
     parser.add_argument("--frames", type=int, default=20, help="of each case, even")
     parser.add_argument("--seconds", type=float, default=120, help="a VTK row that takes longer has fewer frames, "

@@ -13,7 +13,7 @@ import argparse
 import pathlib
 import sys
 
-from tables import Results, doubling, median_ms, p95_ms, print_tables, size_name, technique_of, title_of
+from tables import Results, doubling, median_ms, p95_ms, print_tables, size_name, technique_of, title_of, unique
 
 # Okabe and Ito's palette, which colour-blind readers can tell apart; as in the paper blue is direct, red
 # the march, green the stored mesh. Graphics is solid and filled, compute dashed and hollow.
@@ -145,12 +145,13 @@ def draw_sweep(plt, results):
                       color=color, mfc="white", ms=8, mew=1.4, zorder=3)
             if not rows:
                 continue
-            # There, and back again.
-            for towards, style in (("higher", "-"), ("lower", ":")):
+            # There, and back again; "both" where they were not told apart.
+            for towards in unique(row["towards"] for row in rows):
+                pale = 0.45 if towards == "lower" else 1
                 some = sorted((row for row in rows if row["towards"] == towards), key=lambda row: row["isovalue"])
                 xs, ys = [row["isovalue"] for row in some], [median_ms([row]) for row in some]
-                axis.fill_between(xs, ys, [p95_ms([row]) for row in some], color=color, alpha=0.15, lw=0)
-                axis.plot(xs, ys, **{**look_of(results, way), "marker": None, "linestyle": style})
+                axis.fill_between(xs, ys, [p95_ms([row]) for row in some], color=color, alpha=0.15 * pale, lw=0)
+                axis.plot(xs, ys, **{**look_of(results, way), "marker": None, "alpha": pale})
                 series.setdefault(way, (xs, ys))
         axis.set_title(title_of(volume))
         axis.set_xlabel("isovalue, share of the value range")
@@ -158,7 +159,7 @@ def draw_sweep(plt, results):
             label_ends(axis, [(xs[-1], ys[-1], way, color_of(way)) for way, (xs, ys) in series.items()])
     axes[0].set_ylabel("draw time, ms")
     save(figure, results, "A new isovalue each frame",
-         "median, shaded to the 95th percentile; dotted: on the way down again; diamonds: held")
+         "median, shaded to the 95th percentile; pale: on the way down again; diamonds: held")
 
 
 def draw_stereo(plt, results):

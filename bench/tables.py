@@ -201,10 +201,12 @@ def sweep_table(results, ratios_only):
             continue
         worst = max((row for row in sweep if row["way"] == sweep[0]["way"]),
                     key=lambda row: row["frame"]["median_ms"])
-        at_worst = {key: worst[key] for key in ("isovalue", "towards")}
-        columns = [results.medians(volume=volume, sequence="sweep", **more)
-                   for more in ({}, {"towards": "higher"}, {"towards": "lower"}, at_worst)]
-        names = ["mean of the sweep", "to higher isovalues", "to lower ones", f"slowest, {worst['isovalue']:.3g}"]
+        picks = {"mean of the sweep": {}}
+        for towards in sorted({row["towards"] for row in sweep} & {"higher", "lower"}):
+            picks[f"to {towards} isovalues"] = {"towards": towards}
+        picks[f"slowest, {worst['isovalue']:.3g}"] = {key: worst[key] for key in ("isovalue", "towards")}
+        names = list(picks)
+        columns = [results.medians(volume=volume, sequence="sweep", **more) for more in picks.values()]
         print_times(results, title_of(volume), names, columns, ratios_only)
         lines = []
         for way in results.ways:
