@@ -66,15 +66,12 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     };
     find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
     const std::vector lists(6, Kind::buffer);
-    const bool hiz = occlusion_->kind() == Occlusion::hiz;
-    const uint32_t all = 0, seen = 1, tested = 2;  // as in cull.comp
-    select_[size_t(Select::all)] = make("cull", lists, 12, {two_sizes, all}, cull_comp);
-    select_[size_t(Select::seen)] = make("cull", lists, 12, {two_sizes, seen}, cull_comp);
-    select_[size_t(Select::unseen)] = hiz ? make("cull", lists, 12, {two_sizes}, cull_hiz)
-                                          : make("cull", lists, 12, {two_sizes, tested}, cull_comp);
+    for (uint32_t which = 0; which < select_.size(); ++which)
+        select_[which] = make("cull", lists, 12, {two_sizes, which}, cull_comp);
+    if (occlusion_->kind() == Occlusion::hiz)
+        select_hiz_ = make("cull", lists, 12, {two_sizes}, cull_hiz);
     if (grid.info().blocks.w < WORTH_GUESSING) return;
     guesses_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
-    select_[size_t(Select::uncovered)] = make("cull", lists, 12, {two_sizes, tested}, cull_comp);
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     find_uncovered_ = make("find uncovered", {Kind::buffer, Kind::texture, Kind::buffer}, 8,
                            {/* EXACT= */ 0, filtered},
@@ -182,9 +179,11 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
     };
     const bool uncovered = which == Select::uncovered, unseen = which == Select::unseen;
     first_draw_ = (LISTS * surface + (uncovered ? 1 : unseen ? 2 : 0)) * sizes_ * draw_count_;
-    commands.bind(select_[size_t(which)],
-                  {active_groups_[surface], draws_, drawn_blocks_, counters_,
-                   unseen ? drawn() : visible_[seen_], unseen ? occlusion_->result() : drawn()});
+    // Rays have marked uncovered blocks, and proxies unseen ones: cull.comp's TESTED for both.
+    commands.bind(
+        unseen && select_hiz_ ? select_hiz_ : select_[std::min(size_t(which), select_.size() - 1)],
+        {active_groups_[surface], draws_, drawn_blocks_, counters_,
+         unseen ? drawn() : visible_[seen_], unseen ? occlusion_->result() : drawn()});
     commands.push(Push{first_draw_, draw_count_, workgroups_});
     commands.dispatch_indirect(active_groups_[surface], 0);
     commands.barrier();

@@ -63,7 +63,8 @@ private:
     uint32_t workgroups_, sizes_, draw_count_ = 0, first_draw_ = 0;
     std::unique_ptr<OcclusionTest> occlusion_;
     gpu::Pipeline find_active_, find_uncovered_;
-    std::array<gpu::Pipeline, 4> select_;     // one for each Select
+    std::array<gpu::Pipeline, 3> select_;     // one for each SELECT of cull.comp
+    gpu::Pipeline select_hiz_;                // unseen blocks, by a depth pyramid
     std::vector<gpu::Buffer> active_groups_;  // one for each surface
     gpu::Buffer drawn_blocks_, draws_, counters_;
     std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
