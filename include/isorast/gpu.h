@@ -17,8 +17,9 @@ struct DeviceInfo {
     std::string name, driver, kind;  // kind: "discrete GPU", "integrated GPU", "CPU", ...
     std::string api_version;
     uint32_t subgroup_size = 0;
-    bool subgroup_sums = false;  // compute shaders can add across a subgroup
-    uint64_t memory_bytes = 0;   // of the largest device-local heap
+    bool subgroup_sums = false;       // compute shaders can add across a subgroup
+    bool mesh_subgroup_sums = false;  // task and mesh shaders can, across 32 threads
+    uint64_t memory_bytes = 0;        // of the largest device-local heap
     uint64_t max_allocation_bytes = 0;
     uint32_t max_image_side = 0;  // voxels along one side of a 3D image
     // Empty when the device can; else why it cannot, in a few words.

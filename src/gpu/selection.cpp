@@ -160,8 +160,12 @@ DeviceInfo describe(VkPhysicalDevice physical) {
     const VkSubgroupFeatureFlags sums = VK_SUBGROUP_FEATURE_BASIC_BIT |
                                         VK_SUBGROUP_FEATURE_BALLOT_BIT |
                                         VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
-    info.subgroup_sums = (subgroup.supportedOperations & sums) == sums &&
-                         (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT);
+    const VkShaderStageFlags mesh_stages =
+        VK_SHADER_STAGE_TASK_BIT_EXT | VK_SHADER_STAGE_MESH_BIT_EXT;
+    const bool can_sum = (subgroup.supportedOperations & sums) == sums;
+    info.subgroup_sums = can_sum && (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT);
+    info.mesh_subgroup_sums = can_sum && subgroup.subgroupSize >= 32 &&
+                              (subgroup.supportedStages & mesh_stages) == mesh_stages;
     info.max_allocation_bytes = limits.maxMemoryAllocationSize;
     VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(physical, &memory);

@@ -19,14 +19,13 @@ using uint = uint32_t;
 #define ISORAST_CONSTANT const
 #endif
 
-// A block is 8^3 cells: the grain of min-max, of the active list and of culling. The paper's
-// extraction works on 8x8x4 cells (section 3.2), so that a cell's index fits 8 bits: a half of a
-// block.
+// A block is 8^3 cells: the grain of min-max, of the active list, of culling and of extraction. The
+// paper extracts 8x8x4 cells (section 3.2), so that a cell's index fits 8 bits.
 ISORAST_CONSTANT uint BLOCK = 8;
 // A group is 4x4x2 = 32 blocks: one 32-bit mask of active blocks.
 ISORAST_CONSTANT uint GROUP_X = 4, GROUP_Y = 4, GROUP_Z = 2, GROUP_BLOCKS = 32;
 // Drawn blocks are listed in quartets of 2x2x1: a quarter of the memory of a list of blocks. A draw
-// takes 2^19 quartets, 32768 in a row: with eight workgroups each, the most that every device can
+// takes 2^19 quartets, 32768 in a row: with four workgroups each, no more than every device can
 // launch at once (2^22) and along an axis (65535).
 ISORAST_CONSTANT uint QUARTETS = 8, DRAW_QUARTETS = 1 << 19, DRAW_ROW = 1 << 15;
 // A draw of a list: indirect arguments, workgroups for quartets along x and y and for the blocks of

@@ -30,7 +30,7 @@ public:
     // on CPUs.
     Counting(const gpu::Device& device, const Volume& volume, Size size, bool sums)
         : grid_(device, series_of({&volume, 1}), 0, 0),
-          culling_(grid_, make_depth_pyramid(grid_), 1, /* two_sizes= */ true),
+          culling_(grid_, make_depth_pyramid(grid_), /* two_sizes= */ true),
           placement_{volume.affine, volume.dims},
           bytes_(uint64_t{4} * size.width * size.height),
           table_(upload_triangle_table(device)) {

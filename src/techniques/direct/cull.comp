@@ -35,7 +35,6 @@ layout(set = 1, binding = 5, std430) readonly buffer TestedBlocks { uint tested_
 layout(push_constant) uniform Push {
     uint first_draw;  // of the list of small blocks; that of large ones follows
     uint draws_of_list;
-    uint workgroups;  // that draw a block
 };
 
 const uint LONG = 8192;  // quartets
@@ -91,7 +90,7 @@ void list(uint size, uint i, uint entry) {
     if (place % DRAW_ROW == 0) atomicMax(draws[draw].y, place / DRAW_ROW + 1);
     // A workgroup for each block of a quartet, so that small volumes fill the device; in long lists
     // one for all, as half of those would find nothing to do.
-    if (place == 0) atomicAdd(draws[draw].z, 4 * workgroups);
+    if (place == 0) atomicAdd(draws[draw].z, 4u);
     if (place == LONG && TWO_SIZES) atomicAdd(draws[draw].z, uint(-3));
 }
 

@@ -41,12 +41,8 @@ glm::dvec3 to_vec(const std::array<double, 3>& v) {
 
 }  // namespace
 
-Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups,
-                 bool two_sizes)
-    : grid_(grid),
-      workgroups_(workgroups),
-      sizes_(two_sizes ? 2 : 1),
-      occlusion_(std::move(occlusion)) {
+Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, bool two_sizes)
+    : grid_(grid), sizes_(two_sizes ? 2 : 1), occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
     const uint64_t quartets = uint64_t{shared::QUARTETS} * groups;
@@ -67,9 +63,9 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
     const std::vector lists(6, Kind::buffer);
     for (uint32_t which = 0; which < select_.size(); ++which)
-        select_[which] = make("cull", lists, 12, {two_sizes, which}, cull_comp);
+        select_[which] = make("cull", lists, 8, {two_sizes, which}, cull_comp);
     if (occlusion_->kind() == Occlusion::hiz)
-        select_hiz_ = make("cull", lists, 12, {two_sizes}, cull_hiz);
+        select_hiz_ = make("cull", lists, 8, {two_sizes}, cull_hiz);
     if (grid.info().blocks.w < WORTH_GUESSING) return;
     guesses_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
@@ -175,7 +171,7 @@ bool Culling::find_uncovered(Commands& commands, const Frame& frame, const Targe
 
 void Culling::select(Commands& commands, uint32_t surface, Select which) {
     struct Push {
-        uint32_t first_draw, draws_of_list, workgroups;
+        uint32_t first_draw, draws_of_list;
     };
     const bool uncovered = which == Select::uncovered, unseen = which == Select::unseen;
     first_draw_ = (LISTS * surface + (uncovered ? 1 : unseen ? 2 : 0)) * sizes_ * draw_count_;
@@ -184,7 +180,7 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
         unseen && select_hiz_ ? select_hiz_ : select_[std::min(size_t(which), select_.size() - 1)],
         {active_groups_[surface], draws_, drawn_blocks_, counters_,
          unseen ? drawn() : visible_[seen_], unseen ? occlusion_->result() : drawn()});
-    commands.push(Push{first_draw_, draw_count_, workgroups_});
+    commands.push(Push{first_draw_, draw_count_});
     commands.dispatch_indirect(active_groups_[surface], 0);
     commands.barrier();
 }

@@ -15,9 +15,8 @@ namespace isorast {
 
 class Culling {
 public:
-    // `workgroups`: how many draw a block. `two_sizes`: whether large blocks get their own list.
-    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t workgroups,
-            bool two_sizes);
+    // `two_sizes`: whether large blocks get their own list.
+    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, bool two_sizes);
 
     // The active groups of each surface: once an isovalue.
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
@@ -60,7 +59,7 @@ private:
     const gpu::Buffer& drawn() const { return guessed_ ? guesses_ : visible_[seen_]; }
 
     const Grid& grid_;
-    uint32_t workgroups_, sizes_, draw_count_ = 0, first_draw_ = 0;
+    uint32_t sizes_, draw_count_ = 0, first_draw_ = 0;
     std::unique_ptr<OcclusionTest> occlusion_;
     gpu::Pipeline find_active_, find_uncovered_;
     std::array<gpu::Pipeline, 3> select_;     // one for each SELECT of cull.comp

@@ -12,11 +12,13 @@
 #include "extract_forward_stereo_mesh.h"
 #include "extract_mesh.h"
 #include "extract_stereo_mesh.h"
+#include "extract_subgroups_mesh.h"
+#include "extract_subgroups_stereo_mesh.h"
+#include "extract_subgroups_task.h"
 #include "extract_task.h"
 #include "forward_frag.h"
 #include "forward_stereo_frag.h"
 #include "gpu/device.h"
-#include "shaders/marching_cubes.h"
 #include "surface_number_frag.h"
 #include "surface_number_stereo_frag.h"
 #include "techniques/direct/rasterizer.h"
@@ -31,15 +33,6 @@ using gpu::Kind;
 struct Push {
     uint32_t draw, surface, first_draw;
 };
-
-gpu::Buffer upload_cases(const gpu::Device& device) {
-    const CaseTable table = marching_cubes_table();
-    gpu::Buffer cases(device, sizeof(table.packed), gpu::Buffer::Memory::device, "marching cubes");
-    gpu::run_once(device, [&](Commands& commands) {
-        commands.update(cases, 0, table.packed.data(), sizeof(table.packed));
-    });
-    return cases;
-}
 
 // What a picture is drawn into beside depth.
 enum class Colors : uint8_t { none, numbers, shaded };
@@ -73,18 +66,19 @@ public:
     void clear(Commands& commands, const Frame& frame, const Target& target) const override;
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override;
-    uint64_t gpu_bytes() const override { return cases_.bytes(); }
+    uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
 
 private:
     const gpu::Pipeline& pipeline(const Frame& frame);
+    std::span<const uint32_t> mesh_code(bool forward, bool stereo) const;
 
     const Grid& grid_;
-    gpu::Buffer cases_;                        // marching cubes: 256 x uvec2
+    gpu::Buffer triangle_table_;
     std::array<gpu::Pipeline, 12> pipelines_;  // made when first needed
 };
 
 HardwareRasterizer::HardwareRasterizer(const Grid& grid)
-    : grid_(grid), cases_(upload_cases(grid.device())) {
+    : grid_(grid), triangle_table_(upload_triangle_table(grid.device())) {
     const gpu::Device& device = grid_.device();
     if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
         throw Error(fmt::format(
@@ -94,6 +88,18 @@ HardwareRasterizer::HardwareRasterizer(const Grid& grid)
                                                    : device.info().why_not_hardware));
 }
 
+std::span<const uint32_t> HardwareRasterizer::mesh_code(bool forward, bool stereo) const {
+    const bool sums = grid_.device().info().mesh_subgroup_sums;
+    if (forward && stereo)
+        return grid_.pick(extract_forward_stereo_mesh, extract_forward_stereo_mesh_bricked);
+    if (forward) return grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked);
+    if (sums && stereo)
+        return grid_.pick(extract_subgroups_stereo_mesh, extract_subgroups_stereo_mesh_bricked);
+    if (sums) return grid_.pick(extract_subgroups_mesh, extract_subgroups_mesh_bricked);
+    if (stereo) return grid_.pick(extract_stereo_mesh, extract_stereo_mesh_bricked);
+    return grid_.pick(extract_mesh, extract_mesh_bricked);
+}
+
 const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
     const Colors colors = colors_of(frame);
     const bool stereo = frame.eyes() > 1, clipped = !frame.clips.empty();
@@ -101,18 +107,15 @@ const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
     if (pipeline) return pipeline;
 
     using Code = std::span<const uint32_t>;
-    const bool forward = colors == Colors::shaded;
-    const Code mono_mesh = forward ? grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked)
-                                   : grid_.pick(extract_mesh, extract_mesh_bricked);
-    const Code stereo_mesh =
-        forward ? grid_.pick(extract_forward_stereo_mesh, extract_forward_stereo_mesh_bricked)
-                : grid_.pick(extract_stereo_mesh, extract_stereo_mesh_bricked);
+    const bool sums = grid_.device().info().mesh_subgroup_sums;
+    const Code task = sums ? grid_.pick(extract_subgroups_task, extract_subgroups_task_bricked)
+                           : grid_.pick(extract_task, extract_task_bricked);
     const std::array<Code, 3> fragment{clip_frag, surface_number_frag, forward_frag};
     const std::array<Code, 3> stereo_fragment{clip_stereo_frag, surface_number_stereo_frag,
                                               forward_stereo_frag};
     std::vector<gpu::Shader> shaders{
-        {VK_SHADER_STAGE_TASK_BIT_EXT, grid_.pick(extract_task, extract_task_bricked)},
-        {VK_SHADER_STAGE_MESH_BIT_EXT, stereo ? stereo_mesh : mono_mesh}};
+        {VK_SHADER_STAGE_TASK_BIT_EXT, task},
+        {VK_SHADER_STAGE_MESH_BIT_EXT, mesh_code(colors == Colors::shaded, stereo)}};
     if (colors != Colors::none || clipped)
         shaders.push_back(
             {VK_SHADER_STAGE_FRAGMENT_BIT, (stereo ? stereo_fragment : fragment)[size_t(colors)]});
@@ -135,7 +138,7 @@ void HardwareRasterizer::clear(Commands& commands, const Frame& frame, const Tar
 void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uint32_t surface,
                                  const Frame& frame, const Target& target) {
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
-    commands.bind(pipeline(frame), {culling.draws(), culling.drawn_blocks(), cases_});
+    commands.bind(pipeline(frame), {culling.draws(), culling.drawn_blocks(), triangle_table_});
     const uint32_t first = culling.first_draw(Culling::Size::small);  // here, all are
     for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
         commands.push(Push{draw, surface, first});

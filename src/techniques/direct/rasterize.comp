@@ -38,8 +38,6 @@ layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 // have it, or through those before rounding, as lavapipe has it.
 layout(constant_id = 2) const bool SNAPPED = false;
 
-#include "shaders/cell_rows.glsl"
-
 // Every pixel of every triangle goes through here.
 void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
     if (CLIPPED && !is_kept(eye, vec2(pixel) + 0.5, depth)) return;
@@ -59,20 +57,18 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 
 #include "techniques/direct/triangle.glsl"
 
-const uint ROWS = 81;  // of corners
 // Shared memory is what limits this shader: a GPU may have no more than 48 KiB a multiprocessor for
 // all workgroups on it, and hides their waiting for voxels and for each other by having many. So
 // voxels are packed, and the lists are as long as most blocks need; blocks with more are worked off
 // in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197 crossed
 // edges and 160 triangles.
 const uint MAX_LISTED = 208;  // vertices, and occupied cells
-const uint MAX_TRIANGLES = 360, CELL_ROWS = 64;
+const uint MAX_TRIANGLES = 360;
+
+#include "techniques/direct/block_lists.glsl"
 
 const uint VALUES_OF_WORD = 32 / VOXEL_BITS, ROW_WORDS = (9 * VOXEL_BITS + 31) / 32;
 shared uint values[ROWS * ROW_WORDS];
-shared uint signs[ROWS];
-shared uvec2 rows[ROWS];  // crossed edges of a corner row, in this slab, and the first one's number
-shared uint triangles[MAX_TRIANGLES];  // cell (x + 8 y + 64 z) | place in triangle_table << 9
 shared uint row_totals;                // vertices | cells << 16
 shared uint triangle_total;
 // First the edges that vertices lie on, and the occupied cells. Then the vertices' pixels on the
@@ -141,37 +137,7 @@ float value_at(uint row, uint x) {
     return unpack(values[ROW_WORDS * row + x / VALUES_OF_WORD], x);
 }
 
-// The corner rows of a cell row, which begins at this one.
-CellRow cell_row(uint row) {
-    return CellRow(signs[row], signs[min(row + 1, ROWS - 1)], signs[min(row + 9, ROWS - 1)],
-                   signs[min(row + 10, ROWS - 1)]);
-}
-
-// Consecutive cell rows, y + 8 z.
-struct Slab {
-    uint first, count;
-};
-
-// Whether a cell row is in the slab, and in the volume.
-bool in_slab(Slab slab, uint y, uint z, ivec3 left) {
-    return y < 8 && z < 8 && int(y) < left.y && int(z) < left.z &&
-           y + 8 * z - slab.first < slab.count;
-}
-
-// Crossed edges of a corner row that cells of the slab have.
-uint crossed_edges(CellRow row, uint y, uint z, Slab slab, ivec3 left, uint cells_x) {
-    // Cell rows around the corner row; y - 1 and z - 1 wrap to rows that are not there.
-    const bool here = in_slab(slab, y, z, left), below = in_slab(slab, y - 1, z, left);
-    const bool under = in_slab(slab, y, z - 1, left), both = in_slab(slab, y - 1, z - 1, left);
-    const uint corners_x = cells_x << 1 | cells_x;
-    return edge_bits(row.a, row.b, row.c) & ((here || below || under || both ? cells_x : 0) |
-                                             (here || under ? corners_x << 8 : 0) |
-                                             (here || below ? corners_x << 17 : 0));
-}
-
-// A thread's first corner row in a slab, and what its rows end before.
-uint first_row(Slab slab) { return 9 * (slab.first / 8) + gl_LocalInvocationIndex; }
-uint end_row(Slab slab) { return 9 * ((slab.first + slab.count + 7) / 8 + 1); }
+uint first_row(Slab slab) { return first_corner_row(slab) + gl_LocalInvocationIndex; }
 
 // The edges of a row's vertices, up to the vertex `end`.
 void list_row(uint row, uint crossed, uint end) {
@@ -182,7 +148,7 @@ void list_row(uint row, uint crossed, uint end) {
 // Lists the slab's vertices and its occupied cells.
 void list_rows(Slab slab, ivec3 left) {
     const uint cells_x = (1u << clamp(left.x, 0, 8)) - 1;
-    for (uint row = first_row(slab); row < end_row(slab); row += THREADS) {
+    for (uint row = first_row(slab); row < end_corner_row(slab); row += THREADS) {
         const uint y = row % 9, z = row / 9;
         const CellRow corners = cell_row(row);
         const uint crossed = crossed_edges(corners, y, z, slab, left, cells_x);
@@ -205,13 +171,11 @@ void list_triangles() {
     for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
         const uint cell = vertex_depths[i] & 511u;
         const uint entry =
-            5 * cell_case(cell_row(corner_row(cell >> 3 & 7u, cell >> 6)), cell & 7u);
-        const uint count = triangle_table[entry] >> 29;
+            table_entry(cell_row(corner_row(cell >> 3 & 7u, cell >> 6)), cell & 7u);
+        const uint count = triangle_count(entry);
         uint first;
         RESERVE(triangle_total, count, first)
-        if (first + count > MAX_TRIANGLES) continue;
-        [[unroll]] for (uint number = 0; number < 5; ++number)
-            if (number < count) triangles[first + number] = cell | entry + number << 9;
+        if (first + count <= MAX_TRIANGLES) list_triangles_of(cell, entry, count, first);
     }
 }
 
@@ -219,17 +183,6 @@ void list_triangles() {
 bool fits() {
     return max(row_totals & 0xffffu, row_totals >> 16) <= MAX_LISTED &&
            triangle_total <= MAX_TRIANGLES;
-}
-
-// A listed triangle: the corner row and the place in it from which its corners are counted, and
-// where they are.
-struct Listed {
-    uint row, x, corners;
-};
-Listed listed(uint i) {
-    const uint cell = triangles[i] & 511u;
-    return Listed(corner_row(cell >> 3 & 7u, cell >> 6), cell & 7u,
-                  triangle_table[triangles[i] >> 9]);
 }
 
 // Clip space: the one place where voxels meet the camera.
@@ -256,13 +209,6 @@ vec3 to_screen(vec4 clip) {
 #ifdef LARGE
 #include "techniques/direct/clip.glsl"
 
-// The edge that a triangle's corner lies on: nine bits a corner, four for the row and five for the
-// edge's bit there.
-uint corner_edge(Listed triangle, uint corner) {
-    const uint where = triangle.corners >> 9 * corner;
-    return triangle.row + (where & 15u) << 5 | triangle.x + (where >> 4 & 31u);
-}
-
 void rasterize(uint eye, uvec3 first, float iso) {
     const uint thread = gl_LocalInvocationIndex % TEAM;
     for (uint i = gl_LocalInvocationIndex / TEAM; i < triangle_total; i += THREADS / TEAM) {
@@ -288,7 +234,7 @@ void find_origin(uint eye, uvec3 first) {
 
 // The vertices once more, for another eye.
 void list_again(Slab slab, uint eye, uvec3 first) {
-    for (uint row = first_row(slab); row < end_row(slab); row += THREADS)
+    for (uint row = first_row(slab); row < end_corner_row(slab); row += THREADS)
         list_row(row, rows[row].x, rows[row].y + bitCount(rows[row].x));
     find_origin(eye, first);
     barrier();
@@ -307,10 +253,8 @@ void project_vertices(uint eye, uvec3 first, float iso) {
     }
 }
 
-Vertex corner_vertex(Listed triangle, uint corner) {
-    const uint where = triangle.corners >> 9 * corner;
-    const uvec2 row = rows[triangle.row + (where & 15u)];
-    const uint bit = triangle.x + (where >> 4 & 31u), i = row.y + bitCount(row.x & (1u << bit) - 1);
+Vertex vertex_of(Listed triangle, uint corner) {
+    const uint i = corner_vertex(triangle, corner);
     const int pixel = int(vertex_pixels[i]);
     Vertex vertex;
     vertex.pixel = ivec2(pixel << 16 >> 16, pixel >> 16);
@@ -324,8 +268,8 @@ void rasterize(uint eye, uvec3 first, float iso) {
     barrier();
     for (uint i = gl_LocalInvocationIndex; i < triangle_total; i += THREADS) {
         const Listed triangle = listed(i);
-        rasterize_small(eye, origin, corner_vertex(triangle, 0), corner_vertex(triangle, 1),
-                        corner_vertex(triangle, 2));
+        rasterize_small(eye, origin, vertex_of(triangle, 0), vertex_of(triangle, 1),
+                        vertex_of(triangle, 2));
     }
 }
 #endif

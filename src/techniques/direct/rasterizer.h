@@ -24,7 +24,8 @@ public:
 std::unique_ptr<BlockRasterizer> make_hardware_rasterizer(const Grid& grid);
 std::unique_ptr<BlockRasterizer> make_compute_rasterizer(const Grid& grid);
 
-// What rasterize.comp reads as TriangleTable.
+// TriangleTable of both: of each marching-cubes case's five possible triangles, where the corners'
+// vertices are (block_lists.glsl, corner_edge); in the first one, bits 29..31, how many there are.
 gpu::Buffer upload_triangle_table(const gpu::Device& device);
 
 }  // namespace isorast
