@@ -9,6 +9,7 @@
 #include "cull_hiz.h"
 #include "find_active_comp.h"
 #include "find_uncovered_comp.h"
+#include "gpu/device.h"
 
 namespace isorast {
 
@@ -29,10 +30,11 @@ constexpr uint32_t LISTS = 3;
 constexpr uint32_t WORTH_GUESSING = 1 << 15;
 
 // Rays that guess: one in a square of so many pixels a side, everywhere and in what is uncovered.
-constexpr int32_t FEW = 8, MANY = 2;
+constexpr int32_t FEW = 4, MANY = 2;
 
 // A turn or a way, as a share of the distance to the target, beyond which the last frame's visible
-// blocks say little about this frame's; and beyond which looking for what is uncovered pays.
+// blocks say little about this frame's; and beyond which looking for what is uncovered pays on a
+// CPU. While a GPU waits for the last ray, it draws more blocks than that saves.
 constexpr double CUT_DEGREES = 15, CUT_DISTANCE = 0.25, FAST_DEGREES = 2, FAST_DISTANCE = 0.035;
 
 glm::dvec3 to_vec(const std::array<double, 3>& v) {
@@ -69,8 +71,8 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, boo
     if (grid.info().blocks.w < WORTH_GUESSING) return;
     guesses_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
-    find_uncovered_ = make("find uncovered", {Kind::buffer, Kind::texture, Kind::buffer}, 8,
-                           {/* EXACT= */ 0, filtered},
+    find_uncovered_ = make("find uncovered", {Kind::buffer, Kind::texture, Kind::buffer}, 12,
+                           {/* EXACT= */ 0, filtered, /* GUESS= */ 1},
                            grid.pick(find_uncovered_comp, find_uncovered_comp_bricked));
 }
 
@@ -133,7 +135,8 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     const uint64_t before = occlusion_->result().bytes();
     occlusion_->fit(target);
     const bool cut = has_moved(frame.camera, CUT_DEGREES, CUT_DISTANCE);
-    const bool fast = has_moved(frame.camera, FAST_DEGREES, FAST_DISTANCE);
+    const bool fast =
+        grid_.device().is_cpu() && has_moved(frame.camera, FAST_DEGREES, FAST_DISTANCE);
     if (cut) commands.fill(visible_[seen_], 0);
     remembered_ =
         !cut && occlusion_->kind() == Occlusion::hiz && occlusion_->result().bytes() == before;
@@ -144,18 +147,18 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     commands.barrier();
     if (!guessed_ || !changed) return;
     const auto pass = commands.pass("guess visible");
-    guess(commands, frame, target, FEW, visible_[seen_]);
+    guess(commands, frame, target, visible_[seen_], FEW, /* uncovered= */ false);
 }
 
-void Culling::guess(Commands& commands, const Frame& frame, const Target& target, int32_t side,
-                    const gpu::Buffer& visible) const {
+void Culling::guess(Commands& commands, const Frame& frame, const Target& target,
+                    const gpu::Buffer& visible, int32_t side, bool uncovered) const {
     const auto groups = [&](uint32_t pixels) { return (pixels / side + 7) / 8; };
     struct Push {
         int32_t side;
-        uint32_t remembered;
+        uint32_t uncovered, remembered;
     };
     commands.bind(find_uncovered_, {visible, target.depth, occlusion_->result()});
-    commands.push(Push{side, remembered_ ? 1u : 0u});
+    commands.push(Push{side, uncovered ? 1u : 0u, remembered_ ? 1u : 0u});
     commands.dispatch(groups(frame.size.width), groups(frame.size.height), frame.eyes());
     commands.barrier();
 }
@@ -165,7 +168,7 @@ bool Culling::find_uncovered(Commands& commands, const Frame& frame, const Targe
     const auto pass = commands.pass("find uncovered");
     commands.copy(visible_[seen_], 0, guesses_, 0, guesses_.bytes());
     commands.barrier();
-    guess(commands, frame, target, MANY, guesses_);
+    guess(commands, frame, target, guesses_, MANY, /* uncovered= */ true);
     return true;
 }
 

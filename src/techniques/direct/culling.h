@@ -53,8 +53,8 @@ private:
     void find_active(gpu::Commands& commands, uint32_t surface, float isovalue);
     bool has_moved(const Camera& camera, double degrees, double distance) const;
     // Marks what rays hit, one in each square of so many pixels a side.
-    void guess(gpu::Commands& commands, const Frame& frame, const Target& target, int32_t side,
-               const gpu::Buffer& visible) const;
+    void guess(gpu::Commands& commands, const Frame& frame, const Target& target,
+               const gpu::Buffer& visible, int32_t side, bool uncovered) const;
     // The blocks drawn before select(unseen).
     const gpu::Buffer& drawn() const { return guessed_ ? guesses_ : visible_[seen_]; }
 

@@ -19,7 +19,8 @@ layout(set = 1, binding = 1) uniform texture2DArray depth;
 // As the last frame has left it.
 layout(set = 1, binding = 2, std430) readonly buffer Pyramid { float pyramid[]; };
 layout(push_constant) uniform Push {
-    int side;         // of a square; 2: only where there is no surface
+    int side;         // of a square
+    bool uncovered;   // only where there is no surface; of squares of 2x2
     bool remembered;  // the pyramid is there
 };
 
@@ -40,7 +41,7 @@ void main() {
     const uvec3 square = gl_GlobalInvocationID;  // z: the eye
     const ivec2 middle = side * ivec2(square.xy) + side / 2;
     if (any(greaterThanEqual(middle, ivec2(frame.size.xy)))) return;
-    if (side == 2 && (was_uncovered(square) || !is_uncovered(square))) return;
+    if (uncovered && (was_uncovered(square) || !is_uncovered(square))) return;
     const Ray ray = pixel_ray(square.z, vec2(middle));
     float t;
     uint number;
