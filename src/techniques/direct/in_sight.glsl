@@ -5,7 +5,7 @@
 // Needs shaders/hidden.glsl.
 #include "shaders/ray.glsl"
 
-const uint TEAM = 16;           // threads that look at a block together
+const uint TEAM = 8;            // threads that look at a block together
 const uint SQUARES_ALONG = 12;  // at most, that a block is looked at in
 
 bool is_orthographic() { return frame.depth_range.z != 0.0; }
