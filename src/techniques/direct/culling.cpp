@@ -26,8 +26,9 @@ constexpr uint32_t ZERO = 0;
 constexpr uint32_t LISTS = 3;
 
 // With fewer blocks than this (a volume of 256^3), guessing what is visible costs more than drawing
-// all blocks once.
-constexpr uint32_t WORTH_GUESSING = 1 << 15;
+// all blocks once. While a GPU waits for the last ray, its compute rasterizer draws 50000 blocks: as
+// many as a volume of 512^3 may have.
+constexpr uint32_t WORTH_GUESSING = 1 << 15, WORTH_GUESSING_ON_GPU = 1 << 20;
 
 // Rays that guess: one in a square of so many pixels a side, everywhere and in what is uncovered.
 constexpr int32_t FEW = 4, MANY = 2;
@@ -68,7 +69,8 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, boo
         select_[which] = make("cull", lists, 8, {two_sizes, which}, cull_comp);
     if (occlusion_->kind() == Occlusion::hiz)
         select_hiz_ = make("cull", lists, 8, {two_sizes}, cull_hiz);
-    if (grid.info().blocks.w < WORTH_GUESSING) return;
+    const bool soon_drawn = two_sizes && !device.is_cpu();  // by the compute rasterizer
+    if (grid.info().blocks.w < (soon_drawn ? WORTH_GUESSING_ON_GPU : WORTH_GUESSING)) return;
     guesses_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     find_uncovered_ = make("find uncovered", {Kind::buffer, Kind::texture, Kind::buffer}, 12,
