@@ -3,6 +3,7 @@
 #include "passes/depth_pyramid.h"
 
 #include "build_pyramid_comp.h"
+#include "build_pyramid_surfaces.h"
 
 namespace isorast {
 
@@ -21,11 +22,11 @@ uint64_t pyramid_bytes(Size size, uint32_t eyes) {
 
 }  // namespace
 
-DepthPyramid::DepthPyramid(const Grid& grid)
-    : device_(grid.device()),
-      build_(gpu::Pipeline::compute(
-          grid.device(), grid.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0),
-          build_pyramid_comp)) {}
+DepthPyramid::DepthPyramid(const Grid& grid) : device_(grid.device()) {
+    const auto info = grid.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0);
+    build_ = gpu::Pipeline::compute(device_, info, build_pyramid_comp);
+    build_surfaces_ = gpu::Pipeline::compute(device_, info, build_pyramid_surfaces);
+}
 
 void DepthPyramid::fit(const Target& target) {
     const uint64_t bytes = pyramid_bytes(target.size, target.eyes);
@@ -33,9 +34,9 @@ void DepthPyramid::fit(const Target& target) {
         pyramid_ = gpu::Buffer(device_, bytes, gpu::Buffer::Memory::device, "the depth pyramid");
 }
 
-void DepthPyramid::build(gpu::Commands& commands, const Target& target) {
-    const auto pass = commands.pass("depth pyramid");
-    commands.bind(build_, {target.depth, pyramid_});
+void DepthPyramid::build(gpu::Commands& commands, const Target& target, bool surfaces) {
+    const auto pass = commands.pass(surfaces ? "surface pyramid" : "depth pyramid");
+    commands.bind(surfaces ? build_surfaces_ : build_, {target.depth, pyramid_});
     commands.dispatch((target.size.width + 31) / 32, (target.size.height + 31) / 32, target.eyes);
     commands.barrier();
 }

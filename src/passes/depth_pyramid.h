@@ -11,12 +11,13 @@ public:
     explicit DepthPyramid(const Grid& grid);
     // Once a frame, before it: makes what depends on the picture's size.
     void fit(const Target& target);
-    void build(gpu::Commands& commands, const Target& target);
+    // `surfaces`: of surfaces alone, as if there were no holes in them; hides more than is hidden.
+    void build(gpu::Commands& commands, const Target& target, bool surfaces = false);
     const gpu::Buffer& buffer() const { return pyramid_; }
 
 private:
     const gpu::Device& device_;
-    gpu::Pipeline build_;
+    gpu::Pipeline build_, build_surfaces_;
     gpu::Buffer pyramid_;
 };
 

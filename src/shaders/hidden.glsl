@@ -19,14 +19,28 @@ Squares squares_of(Extent extent, uint most) {
     return Squares(level, low_pixel >> level, high_pixel >> level);
 }
 
+// `first`: the first one of the square's level in the pyramid. SURFACES: where there is no surface,
+// the farthest one around.
+float depth_of_square(uint eye, uint level, uint first, uvec2 square) {
+    float depth = pyramid[first + square.x + pyramid_size(level).x * square.y];
+#ifdef SURFACES
+    while (depth == 0.0 && level < PYRAMID_LEVELS) {
+        square >>= 1u;
+        ++level;
+        depth = pyramid[pyramid_offset(eye, level) + square.x + pyramid_size(level).x * square.y];
+    }
+#endif
+    return depth;
+}
+
 // True if depth already drawn is nearer than all of a box, at every pixel that the box can touch.
 bool is_hidden(uint eye, Extent extent) {
     const Squares squares = squares_of(extent, 4);
     if (any(greaterThan(squares.end - squares.first, uvec2(15)))) return false;  // half a screen
-    const uint offset = pyramid_offset(eye, squares.level), width = pyramid_size(squares.level).x;
+    const uint offset = pyramid_offset(eye, squares.level);
     float farthest = 1.0;
     for (uint y = squares.first.y; y <= squares.end.y; ++y)
         for (uint x = squares.first.x; x <= squares.end.x; ++x)
-            farthest = min(farthest, pyramid[offset + x + width * y]);
+            farthest = min(farthest, depth_of_square(eye, squares.level, offset, uvec2(x, y)));
     return farthest > extent.nearest;
 }

@@ -4,8 +4,9 @@
 // and the indirect arguments to draw it. Culling is in two passes (Kreskowski 2022, section 3.5 and
 // figure 2): blocks that the last frame saw are drawn first; then those of all others that they do
 // not hide: as raster proxies have found before, or, HIZ, by a depth pyramid, and once more, finer,
-// for what that leaves. In between, after a change, those that rays hit where nothing is drawn yet.
+// for what that leaves. In between, SURFACES, those that surfaces around do not hide.
 // variant cull_hiz: -DHIZ
+// variant cull_surfaces: -DHIZ -DSURFACES
 #include "shaders/scene.glsl"
 #include "techniques/direct/limits.glsl"
 #include "techniques/direct/list.glsl"
@@ -29,6 +30,9 @@ layout(set = 1, binding = 3, std430) buffer CounterBlock { Counters counters; };
 layout(set = 1, binding = 4, std430) readonly buffer SeenBlocks { uint seen_blocks[]; };
 #ifdef HIZ
 layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
+#ifdef SURFACES
+layout(set = 1, binding = 6, std430) writeonly buffer DrawnBefore { uint drawn_before[]; };
+#endif
 #else
 layout(set = 1, binding = 5, std430) readonly buffer TestedBlocks { uint tested_blocks[]; };
 #endif
@@ -55,8 +59,8 @@ shared uint candidates[CULL_GROUPS * GROUP_BLOCKS];  // group << 5 | place
 shared uint candidate_total;
 #endif
 
-// True if an eye may see the block. `seen`: in the last frame, or by raster proxies or rays. `look`:
-// only if a closer look finds it in sight.
+// True if an eye may see the block. `seen`: in the last frame, by rays, or by raster proxies.
+// `look`: only if a closer look finds it in sight.
 bool is_selected(uvec3 block, bool seen, out bool large, out bool look) {
     large = look = false;
     if (SELECT != ALL && seen != (SELECT == SEEN || SELECT == TESTED)) return false;
@@ -144,6 +148,12 @@ void main() {
                     atomicOr(drawn_masks[of], 1u << at);
         }
         barrier();
+#endif
+#ifdef SURFACES
+        if (thread < CULL_GROUPS && first + thread < group_count) {
+            const uint group = active_groups[first + thread].x;
+            drawn_before[group] = seen_blocks[group] | drawn_masks[thread];
+        }
 #endif
         // The first threads: a quartet each. It is large if one of its blocks is.
         uint mask = 0, size = 0, number = 0;

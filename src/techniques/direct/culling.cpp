@@ -7,9 +7,10 @@
 
 #include "cull_comp.h"
 #include "cull_hiz.h"
+#include "cull_surfaces.h"
 #include "find_active_comp.h"
-#include "find_uncovered_comp.h"
 #include "gpu/device.h"
+#include "guess_visible_comp.h"
 
 namespace isorast {
 
@@ -22,20 +23,19 @@ using Memory = gpu::Buffer::Memory;
 // Most workgroups along one axis of a dispatch that every device allows.
 constexpr uint32_t MAX_ROW = 65535;
 constexpr uint32_t ZERO = 0;
-// Of each surface: of seen (or all), of uncovered, and of unseen blocks.
+// Of each surface: of seen (or all), of likely, and of unseen blocks.
 constexpr uint32_t LISTS = 3;
 
-// With fewer blocks than this (a volume of 256^3), guessing what is visible costs more than drawing
-// all blocks once. While a GPU waits for the last ray, its compute rasterizer draws 50000 blocks: as
-// many as a volume of 512^3 may have.
-constexpr uint32_t WORTH_GUESSING = 1 << 15, WORTH_GUESSING_ON_GPU = 1 << 20;
+// With fewer blocks than this (a volume of 256^3), drawing in more steps costs more than drawing
+// all blocks once. While a GPU waits for the last ray, its compute rasterizer draws 50000 blocks:
+// as many as a volume of 512^3 may have.
+constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_RAY_ON_GPU = 1 << 20;
 
-// Rays that guess: one in a square of so many pixels a side, everywhere and in what is uncovered.
-constexpr int32_t FEW = 4, MANY = 2;
+// Rays that guess: one in a square of so many pixels a side.
+constexpr int32_t RAY_SIDE = 4;
 
 // A turn or a way, as a share of the distance to the target, beyond which the last frame's visible
-// blocks say little about this frame's; and beyond which looking for what is uncovered pays on a
-// CPU. While a GPU waits for the last ray, it draws more blocks than that saves.
+// blocks say little about this frame's; and beyond which they leave many holes.
 constexpr double CUT_DEGREES = 15, CUT_DISTANCE = 0.25, FAST_DEGREES = 2, FAST_DISTANCE = 0.035;
 
 glm::dvec3 to_vec(const std::array<double, 3>& v) {
@@ -64,23 +64,28 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, boo
             spirv);
     };
     find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
-    const std::vector lists(6, Kind::buffer);
+    const std::vector lists(7, Kind::buffer);
     for (uint32_t which = 0; which < select_.size(); ++which)
         select_[which] = make("cull", lists, 8, {two_sizes, which}, cull_comp);
     if (occlusion_->kind() == Occlusion::hiz)
         select_hiz_ = make("cull", lists, 8, {two_sizes}, cull_hiz);
-    const bool soon_drawn = two_sizes && !device.is_cpu();  // by the compute rasterizer
-    if (grid.info().blocks.w < (soon_drawn ? WORTH_GUESSING_ON_GPU : WORTH_GUESSING)) return;
-    guesses_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
+    const uint32_t blocks = grid.info().blocks.w;
+    if (blocks < WORTH_A_STEP) return;
+    if (occlusion_->kind() == Occlusion::hiz) {
+        drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
+        select_likely_ = make("cull", lists, 8, {two_sizes}, cull_surfaces);
+    }
+    soon_drawn_ = two_sizes && !device.is_cpu() && blocks < WORTH_A_RAY_ON_GPU;
+    if (soon_drawn_) return;
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
-    find_uncovered_ = make("find uncovered", {Kind::buffer, Kind::texture, Kind::buffer}, 12,
-                           {/* EXACT= */ 0, filtered, /* GUESS= */ 1},
-                           grid.pick(find_uncovered_comp, find_uncovered_comp_bricked));
+    guess_visible_ =
+        make("guess visible", {Kind::buffer}, 4, {/* EXACT= */ 0, filtered, /* GUESS= */ 1},
+             grid.pick(guess_visible_comp, guess_visible_comp_bricked));
 }
 
 uint64_t Culling::gpu_bytes() const {
     uint64_t bytes = occlusion_->gpu_bytes() + drawn_blocks_.bytes() + draws_.bytes() +
-                     counters_.bytes() + 2 * visible_[0].bytes() + guesses_.bytes();
+                     counters_.bytes() + 2 * visible_[0].bytes() + drawn_before_.bytes();
     for (const auto& list : active_groups_)
         bytes += list.bytes();
     return bytes;
@@ -134,57 +139,44 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     seen_ = 1 - seen_;
     target.visible_blocks = &visible_[1 - seen_];
     commands.fill(visible_[1 - seen_], 0);
-    const uint64_t before = occlusion_->result().bytes();
     occlusion_->fit(target);
     const bool cut = has_moved(frame.camera, CUT_DEGREES, CUT_DISTANCE);
-    const bool fast =
-        grid_.device().is_cpu() && has_moved(frame.camera, FAST_DEGREES, FAST_DISTANCE);
+    const bool fast = !soon_drawn_ && has_moved(frame.camera, FAST_DEGREES, FAST_DISTANCE);
     if (cut) commands.fill(visible_[seen_], 0);
-    remembered_ =
-        !cut && occlusion_->kind() == Occlusion::hiz && occlusion_->result().bytes() == before;
     last_camera_ = frame.camera;
-    const bool changed = changed_ || cut;
-    guessed_ = (changed || fast) && bool(find_uncovered_);
+    const bool changed = changed_ || cut, guessed = changed && bool(guess_visible_);
     changed_ = false;
+    // Marks of drawn blocks are for all surfaces: likely ones can be drawn of a single one only.
+    // And something must be drawn before.
+    has_likely_ =
+        select_likely_ && frame.isovalues.size() == 1 && (changed || fast) && (guessed || !cut);
     commands.barrier();
-    if (!guessed_ || !changed) return;
-    const auto pass = commands.pass("guess visible");
-    guess(commands, frame, target, visible_[seen_], FEW, /* uncovered= */ false);
+    if (guessed) guess_visible(commands, frame);
 }
 
-void Culling::guess(Commands& commands, const Frame& frame, const Target& target,
-                    const gpu::Buffer& visible, int32_t side, bool uncovered) const {
-    const auto groups = [&](uint32_t pixels) { return (pixels / side + 7) / 8; };
-    struct Push {
-        int32_t side;
-        uint32_t uncovered, remembered;
-    };
-    commands.bind(find_uncovered_, {visible, target.depth, occlusion_->result()});
-    commands.push(Push{side, uncovered ? 1u : 0u, remembered_ ? 1u : 0u});
+void Culling::guess_visible(Commands& commands, const Frame& frame) const {
+    const auto pass = commands.pass("guess visible");
+    const auto groups = [](uint32_t pixels) { return (pixels / RAY_SIDE + 7) / 8; };
+    commands.bind(guess_visible_, {visible_[seen_]});
+    commands.push(RAY_SIDE);
     commands.dispatch(groups(frame.size.width), groups(frame.size.height), frame.eyes());
     commands.barrier();
-}
-
-bool Culling::find_uncovered(Commands& commands, const Frame& frame, const Target& target) {
-    if (!guessed_) return false;
-    const auto pass = commands.pass("find uncovered");
-    commands.copy(visible_[seen_], 0, guesses_, 0, guesses_.bytes());
-    commands.barrier();
-    guess(commands, frame, target, guesses_, MANY, /* uncovered= */ true);
-    return true;
 }
 
 void Culling::select(Commands& commands, uint32_t surface, Select which) {
     struct Push {
         uint32_t first_draw, draws_of_list;
     };
-    const bool uncovered = which == Select::uncovered, unseen = which == Select::unseen;
-    first_draw_ = (LISTS * surface + (uncovered ? 1 : unseen ? 2 : 0)) * sizes_ * draw_count_;
-    // Rays have marked uncovered blocks, and proxies unseen ones: cull.comp's TESTED for both.
+    const bool likely = which == Select::likely, unseen = which == Select::unseen;
+    first_draw_ = (LISTS * surface + (likely ? 1 : unseen ? 2 : 0)) * sizes_ * draw_count_;
+    // Raster proxies have marked unseen blocks: cull.comp's TESTED.
     commands.bind(
-        unseen && select_hiz_ ? select_hiz_ : select_[std::min(size_t(which), select_.size() - 1)],
+        likely                  ? select_likely_
+        : unseen && select_hiz_ ? select_hiz_
+                                : select_[std::min(size_t(which), select_.size() - 1)],
         {active_groups_[surface], draws_, drawn_blocks_, counters_,
-         unseen ? drawn() : visible_[seen_], unseen ? occlusion_->result() : drawn()});
+         unseen ? drawn() : visible_[seen_], likely || unseen ? occlusion_->result() : drawn(),
+         likely ? drawn_before_ : counters_});
     commands.push(Push{first_draw_, draw_count_});
     commands.dispatch_indirect(active_groups_[surface], 0);
     commands.barrier();

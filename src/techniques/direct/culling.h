@@ -23,15 +23,19 @@ public:
 
     // Once a frame, before select(). The blocks marked visible in the last frame become the seen
     // ones, unless the camera is another (a cut). After that, or with another isovalue or time
-    // step, a few rays add what they hit. The shading pass marks this frame's visible blocks in
-    // target.visible_blocks.
+    // step, in large volumes, rays add what they hit. The shading pass marks this frame's visible
+    // blocks in target.visible_blocks.
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
-    enum class Select : uint32_t { all, seen, uncovered, unseen };
-    // Before select(uncovered): after such a change, and when the camera moves fast, many rays
-    // where seen blocks cover nothing. False if this frame does without.
-    bool find_uncovered(gpu::Commands& commands, const Frame& frame, const Target& target);
-    // Before select(unseen): looks at the depth drawn so far, once; and tests a surface's blocks.
-    void look(gpu::Commands& commands, const Target& target) { occlusion_->look(commands, target); }
+    enum class Select : uint32_t { all, seen, likely, unseen };
+    // After such a change, and when the camera moves fast, seen blocks leave holes, and through a
+    // hole all that is behind would be drawn. So likely blocks are drawn before: those that
+    // surfaces around the holes do not hide. True if this frame does so.
+    bool has_likely() const { return has_likely_; }
+    // Before select(likely), with `surfaces`, and before select(unseen): looks at the depth drawn
+    // so far. test(): before select(unseen), of each surface.
+    void look(gpu::Commands& commands, const Target& target, bool surfaces = false) {
+        occlusion_->look(commands, target, surfaces);
+    }
     void test(gpu::Commands& commands, uint32_t surface, const Target& target) {
         occlusion_->test(commands, active_groups_[surface], drawn(), target);
     }
@@ -52,27 +56,26 @@ public:
 private:
     void find_active(gpu::Commands& commands, uint32_t surface, float isovalue);
     bool has_moved(const Camera& camera, double degrees, double distance) const;
-    // Marks what rays hit, one in each square of so many pixels a side.
-    void guess(gpu::Commands& commands, const Frame& frame, const Target& target,
-               const gpu::Buffer& visible, int32_t side, bool uncovered) const;
-    // The blocks drawn before select(unseen).
-    const gpu::Buffer& drawn() const { return guessed_ ? guesses_ : visible_[seen_]; }
+    void guess_visible(gpu::Commands& commands, const Frame& frame) const;
+    // The blocks drawn before select(unseen), of active groups.
+    const gpu::Buffer& drawn() const { return has_likely_ ? drawn_before_ : visible_[seen_]; }
 
     const Grid& grid_;
     uint32_t sizes_, draw_count_ = 0, first_draw_ = 0;
     std::unique_ptr<OcclusionTest> occlusion_;
-    gpu::Pipeline find_active_, find_uncovered_;
+    gpu::Pipeline find_active_, guess_visible_;
     std::array<gpu::Pipeline, 3> select_;     // one for each SELECT of cull.comp
     gpu::Pipeline select_hiz_;                // unseen blocks, by a depth pyramid
+    gpu::Pipeline select_likely_;             // the same, by one of surfaces
     std::vector<gpu::Buffer> active_groups_;  // one for each surface
     gpu::Buffer drawn_blocks_, draws_, counters_;
     std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
     uint32_t seen_ = 0;                   // which of the two is last frame's
-    gpu::Buffer guesses_;                 // the seen blocks and the uncovered ones
-    bool changed_ = false;                // the surface or the camera, since the last frame
-    bool guessed_ = false;                // this frame has guesses_
-    bool remembered_ = false;             // the depth pyramid still is of the last frame's picture
-    std::optional<Camera> last_camera_;   // of the frame that marked visible blocks
+    gpu::Buffer drawn_before_;            // the seen blocks and the likely ones
+    bool changed_ = false;                // the surface, since the last frame
+    bool has_likely_ = false;
+    bool soon_drawn_ = false;            // drawing all blocks takes no longer than a ray
+    std::optional<Camera> last_camera_;  // of the frame that marked visible blocks
 };
 
 }  // namespace isorast

@@ -14,8 +14,8 @@ public:
 
     Occlusion kind() const override { return Occlusion::hiz; }
     void fit(const Target& target) override { pyramid_.fit(target); }
-    void look(gpu::Commands& commands, const Target& target) override {
-        pyramid_.build(commands, target);
+    void look(gpu::Commands& commands, const Target& target, bool surfaces) override {
+        pyramid_.build(commands, target, surfaces);
     }
     void test(gpu::Commands&, const gpu::Buffer&, const gpu::Buffer&, const Target&) override {}
     const gpu::Buffer& result() const override { return pyramid_.buffer(); }

@@ -3,8 +3,8 @@
 // Volumes", 2022. Blocks that the isovalue crosses are listed once an isovalue (find active). Every
 // frame (figure 2), those that the last frame saw are extracted and rasterized at once; then those
 // that they do not hide. When the camera jumps or is fast, or with another isovalue or time
-// step, what the last frame saw says little: rays through what it leaves uncovered find more to
-// draw first. Nothing is stored.
+// step, what the last frame saw says little: then what rays hit is drawn with it, and then blocks
+// that surfaces around do not hide. Nothing is stored.
 #include <isorast/error.h>
 
 #include <array>
@@ -68,17 +68,19 @@ void Direct::record(Commands& commands, const Frame& frame, Target& target) {
     }
     if (!frame.culling) return draw(commands, frame, target, Culling::Select::all);
     draw(commands, frame, target, Culling::Select::seen);
-    if (culling_.find_uncovered(commands, frame, target))
-        draw(commands, frame, target, Culling::Select::uncovered);
+    if (culling_.has_likely()) {
+        culling_.look(commands, target, /* surfaces= */ true);
+        draw(commands, frame, target, Culling::Select::likely);
+    }
     culling_.look(commands, target);
     draw(commands, frame, target, Culling::Select::unseen);
 }
 
 void Direct::draw(Commands& commands, const Frame& frame, const Target& target,
                   Culling::Select which) {
-    // Pass names for all, seen, uncovered and unseen blocks.
-    constexpr std::array CULL{"list blocks", "cull seen", "cull uncovered", "cull unseen"};
-    constexpr std::array EXTRACT{"extract", "extract seen", "extract uncovered", "extract unseen"};
+    // Pass names for all, seen, likely and unseen blocks.
+    constexpr std::array CULL{"list blocks", "cull seen", "cull likely", "cull unseen"};
+    constexpr std::array EXTRACT{"extract", "extract seen", "extract likely", "extract unseen"};
     for (uint32_t surface = 0; surface < frame.isovalues.size(); ++surface) {
         if (which == Culling::Select::unseen) culling_.test(commands, surface, target);
         {

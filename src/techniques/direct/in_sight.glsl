@@ -59,7 +59,7 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
     const float slack = cell_depth(eye);
     const Squares squares = squares_of(extent, SQUARES_ALONG);
     const uvec2 size = squares.end - squares.first + 1;
-    const uint offset = pyramid_offset(eye, squares.level), width = pyramid_size(squares.level).x;
+    const uint offset = pyramid_offset(eye, squares.level);
     // At the most favourable corner of a square.
     const vec2 half_square = vec2(1u << squares.level) / vec2(frame.size.xy);
     for (int axis = 0; axis < 3; ++axis) {
@@ -75,7 +75,7 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
         if (entered < left || (entered <= 0.0 && !is_orthographic())) continue;
         const float t = (is_orthographic() ? -entered : 1.0 / entered) - slack;
         const float nearest = reversed_depth(max(t, frame.depth_range.x)) * 1.00001 + 1e-7;
-        if (pyramid[offset + square.x + width * square.y] <= nearest) return true;
+        if (depth_of_square(eye, squares.level, offset, square) <= nearest) return true;
     }
     return false;
 }

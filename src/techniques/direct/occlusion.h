@@ -17,8 +17,9 @@ public:
     virtual Occlusion kind() const = 0;
     // Once a frame, before it: makes what depends on the picture's size.
     virtual void fit(const Target& target) = 0;
-    // Once a frame, when all blocks that the last frame saw are drawn.
-    virtual void look(gpu::Commands& commands, const Target& target) = 0;
+    // When all blocks that the last frame saw are drawn; of a frame that draws likely blocks before
+    // the others (see Culling), HiZ: with `surfaces` before these, and without after them.
+    virtual void look(gpu::Commands& commands, const Target& target, bool surfaces) = 0;
     // For one surface: its active groups, and a bit for each block that the last frame saw.
     virtual void test(gpu::Commands& commands, const gpu::Buffer& active_groups,
                       const gpu::Buffer& seen, const Target& target) = 0;

@@ -28,7 +28,7 @@ public:
 
     Occlusion kind() const override { return Occlusion::raster; }
     void fit(const Target&) override {}
-    void look(gpu::Commands&, const Target&) override {}
+    void look(gpu::Commands&, const Target&, bool) override {}
     void test(gpu::Commands& commands, const gpu::Buffer& active_groups, const gpu::Buffer& seen,
               const Target& target) override;
     const gpu::Buffer& result() const override { return tested_; }
