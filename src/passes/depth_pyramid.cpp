@@ -22,21 +22,23 @@ uint64_t pyramid_bytes(Size size, uint32_t eyes) {
 
 }  // namespace
 
-DepthPyramid::DepthPyramid(const Grid& grid) : device_(grid.device()) {
-    const auto info = grid.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0);
-    build_ = gpu::Pipeline::compute(device_, info, build_pyramid_comp);
-    build_surfaces_ = gpu::Pipeline::compute(device_, info, build_pyramid_surfaces);
-}
+DepthPyramid::DepthPyramid(const Grid& grid) : grid_(grid) {}
 
 void DepthPyramid::fit(const Target& target) {
     const uint64_t bytes = pyramid_bytes(target.size, target.eyes);
     if (pyramid_.bytes() != bytes)
-        pyramid_ = gpu::Buffer(device_, bytes, gpu::Buffer::Memory::device, "the depth pyramid");
+        pyramid_ =
+            gpu::Buffer(grid_.device(), bytes, gpu::Buffer::Memory::device, "the depth pyramid");
 }
 
 void DepthPyramid::build(gpu::Commands& commands, const Target& target, bool surfaces) {
+    gpu::Pipeline& build = build_[surfaces ? 1 : 0];
+    if (!build)
+        build = gpu::Pipeline::compute(
+            grid_.device(), grid_.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0),
+            surfaces ? std::span<const uint32_t>(build_pyramid_surfaces) : build_pyramid_comp);
     const auto pass = commands.pass(surfaces ? "surface pyramid" : "depth pyramid");
-    commands.bind(surfaces ? build_surfaces_ : build_, {target.depth, pyramid_});
+    commands.bind(build, {target.depth, pyramid_});
     commands.dispatch((target.size.width + 31) / 32, (target.size.height + 31) / 32, target.eyes);
     commands.barrier();
 }

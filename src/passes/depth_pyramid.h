@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The depth pyramid (HiZ) of what is drawn so far, which shaders/hidden.glsl tests against.
 #pragma once
+#include <array>
+
 #include "grid/grid.h"
 #include "image/target.h"
 
@@ -16,8 +18,8 @@ public:
     const gpu::Buffer& buffer() const { return pyramid_; }
 
 private:
-    const gpu::Device& device_;
-    gpu::Pipeline build_, build_surfaces_;
+    const Grid& grid_;
+    std::array<gpu::Pipeline, 2> build_;  // of all, of surfaces: made when first needed
     gpu::Buffer pyramid_;
 };
 

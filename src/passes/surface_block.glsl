@@ -13,13 +13,6 @@ uvec3 first_cell_of(uint block) {
            BLOCK;
 }
 
-uint load_signs(Brick brick, ivec3 start, float iso) {
-    uint bits = 0;
-    for (int x = 0; x < 9; ++x)
-        if (voxel(brick, clamp_to_volume(start + ivec3(x, 0, 0))) >= iso) bits |= 1u << x;
-    return bits;
-}
-
 // All threads together.
 void load_block(uvec3 first, float iso) {
     const Brick brick = brick_of(ivec3(first));

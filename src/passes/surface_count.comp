@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Workgroup: one block. Thread: its corner rows, then its cell rows. Out: how many vertices
 // (crossed edges that it owns) and triangles the block has, as vertices | triangles << 16.
 #include "shaders/scene.glsl"

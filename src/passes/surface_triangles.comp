@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Workgroup: one block. Thread: a row of cells. Out: the block's triangles, as three vertex numbers
 // each, counter-clockwise seen from outside (in voxel space).
 #include "shaders/scene.glsl"

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Workgroup: one block that has vertices or triangles. Thread: its corner rows. Out: a vertex for
 // each crossed edge that the block owns, and for each corner row and axis the number of the first
 // such vertex in the block, from which blocks below find the vertices that they share.

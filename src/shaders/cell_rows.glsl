@@ -1,11 +1,22 @@
 // Rows of corners and of cells along x, seen as bits: one bit a corner says "inside"; what follows
-// from it, edges and cells that the surface crosses, follows for a whole row at a time.
+// from it, edges and cells that the surface crosses, follows for a whole row at a time. Needs
+// shaders/volume.glsl.
 
 // Corner rows have 9 corners, cell rows 8 cells; a block has 9 corner rows along y.
 uint corner_row(uint y, uint z) { return y + 9 * z; }
 
 // The cells that exist: blocks at the volume's end may be cut short.
 ivec3 cells_left(uvec3 first_cell) { return ivec3(grid.voxels.xyz) - 1 - ivec3(first_cell); }
+
+// The signs of the corner row that begins at a voxel, which may lie outside the volume.
+uint load_signs(Brick brick, ivec3 start, float iso) {
+    const int last = int(grid.voxels.x) - 1 - start.x;
+    const ivec3 row = clamp_to_volume(start);
+    uint bits = 0;
+    [[unroll]] for (int x = 0; x < 9; ++x)
+        bits |= (voxel(brick, row + ivec3(min(x, last), 0, 0)) >= iso ? 1u : 0u) << x;
+    return bits;
+}
 
 // Edges that the surface crosses whose lower corner is in this corner row: bits 0..7 along x, 8..16
 // along y, 17..25 along z.

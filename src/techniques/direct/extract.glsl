@@ -2,7 +2,8 @@
 #include "techniques/direct/limits.glsl"
 #include "techniques/direct/block_lists.glsl"
 
-const uint THREADS = 32, SIGN_WORDS = 27;
+layout(local_size_x = 32) in;
+const uint THREADS = gl_WorkGroupSize.x, SIGN_WORDS = 27;
 
 // 136 bytes for 8^3 cells, where the paper's interface block takes 324 for half of them. Row r of
 // cells is bit r % 32 of the word r / 32.
