@@ -156,7 +156,9 @@ TEST_P(Culling, AChangeChangesNoBitAndDrawsHardlyMoreThanAWarmFrame) {
     EXPECT_TRUE(same_bits(warm, expected));
     const uint64_t drawn_whole = whole.stats().blocks_drawn;
     EXPECT_LT(drawn_warm, drawn_whole / 2);
-    if (in_steps) EXPECT_LT(drawn_cold, drawn_warm * 5 / 4);
+    if (in_steps) {
+        EXPECT_LT(drawn_cold, drawn_warm * 5 / 4);
+    }
     const auto changes_no_bit = [&] {
         f.culling = true;
         const Image changed = culled.render(f);
@@ -165,13 +167,17 @@ TEST_P(Culling, AChangeChangesNoBitAndDrawsHardlyMoreThanAWarmFrame) {
     };
     f.camera = orbit(volume, 34, 20);  // fast, but no cut
     EXPECT_TRUE(changes_no_bit());
-    if (in_steps) EXPECT_LT(culled.stats().blocks_drawn, drawn_warm * 5 / 4);
+    if (in_steps) {
+        EXPECT_LT(culled.stats().blocks_drawn, drawn_warm * 5 / 4);
+    }
 
     // At another isovalue the surface lies behind the blocks seen last, which hide little of it.
     // With those alone drawn before: all but 56 of 16118 blocks.
     f.isovalues = {0.6};
     EXPECT_TRUE(changes_no_bit());
-    if (in_steps) EXPECT_LT(culled.stats().blocks_drawn, whole.stats().blocks_drawn * 3 / 5);
+    if (in_steps) {
+        EXPECT_LT(culled.stats().blocks_drawn, whole.stats().blocks_drawn * 3 / 5);
+    }
 
     if (GetParam() == Rasterizer::hardware) return;  // the same lists; seconds a frame on a CPU
     f.size = {320, 240};
