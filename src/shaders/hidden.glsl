@@ -40,7 +40,10 @@ bool is_hidden(uint eye, Extent extent) {
     const uint offset = pyramid_offset(eye, squares.level);
     float farthest = 1.0;
     for (uint y = squares.first.y; y <= squares.end.y; ++y)
-        for (uint x = squares.first.x; x <= squares.end.x; ++x)
-            farthest = min(farthest, depth_of_square(eye, squares.level, offset, uvec2(x, y)));
+        for (uint x = squares.first.x; x <= squares.end.x; x += 4)
+            [[unroll]] for (uint n = 0; n < 4; ++n) {  // all four depths on their way together
+                const uvec2 square = uvec2(min(x + n, squares.end.x), y);
+                farthest = min(farthest, depth_of_square(eye, squares.level, offset, square));
+            }
     return farthest > extent.nearest;
 }

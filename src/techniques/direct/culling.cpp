@@ -27,19 +27,33 @@ constexpr uint32_t ZERO = 0;
 constexpr uint32_t LISTS = 3;
 
 // With fewer blocks than this (a volume of 256^3), drawing in more steps costs more than drawing
-// all blocks once. While a GPU waits for the last ray, its compute rasterizer draws 50000 blocks:
-// as many as a volume of 512^3 may have.
-constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_RAY_ON_GPU = 1 << 20;
+// all blocks at once. A GPU's compute rasterizer draws 30000 while the last ray is waited for: more
+// of them (512^3), and as MANY (1024^3) to cast rays after each change.
+constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18, MANY = 1 << 20;
 
 // Rays that guess: one in a square of so many pixels a side.
 constexpr int32_t RAY_SIDE = 4;
 
-// A turn or a way, as a share of the distance to the target, beyond which the last frame's visible
-// blocks say little about this frame's; and beyond which they leave many holes.
-constexpr double CUT_DEGREES = 15, CUT_DISTANCE = 0.25, FAST_DEGREES = 2, FAST_DISTANCE = 0.035;
+// Of the camera, from one frame to the next.
+struct Motion {
+    double degrees, distance;  // as a share of the distance to the target
+};
+// From CUT on, what the last frame saw says little; from FAST on, its holes are worth a step, and
+// where blocks are many, or the hardware rasterizer's, from ANY on.
+constexpr Motion CUT{15, 0.25}, FAST{2, 0.035}, ANY{0.1, 0.002};
 
 glm::dvec3 to_vec(const std::array<double, 3>& v) {
     return {v[0], v[1], v[2]};
+}
+
+bool has_moved(const std::optional<Camera>& from, const Camera& to, Motion most) {
+    if (!from || from->orthographic != to.orthographic) return true;
+    const glm::dvec3 before = to_vec(from->target) - to_vec(from->position);
+    const glm::dvec3 now = to_vec(to.target) - to_vec(to.position);
+    const double way = glm::length(to_vec(to.position) - to_vec(from->position));
+    const double cosine = glm::dot(glm::normalize(now), glm::normalize(before));
+    return cosine < std::cos(glm::radians(most.degrees)) ||
+           way > most.distance * std::max(glm::length(now), glm::length(before));
 }
 
 }  // namespace
@@ -70,13 +84,14 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, boo
     if (occlusion_->kind() == Occlusion::hiz)
         select_hiz_ = make("cull", lists, 8, {two_sizes}, cull_hiz);
     const uint32_t blocks = grid.info().blocks.w;
-    if (blocks < WORTH_A_STEP) return;
+    const bool soon = two_sizes && !device.is_cpu();
+    if (blocks < (soon ? WORTH_A_STEP_IF_SOON : WORTH_A_STEP)) return;
+    dear_ = !two_sizes || blocks >= MANY;
+    rays_pay_ = !soon || blocks >= MANY;
     if (occlusion_->kind() == Occlusion::hiz) {
         drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
         select_likely_ = make("cull", lists, 8, {two_sizes}, cull_surfaces);
     }
-    soon_drawn_ = two_sizes && !device.is_cpu() && blocks < WORTH_A_RAY_ON_GPU;
-    if (soon_drawn_) return;
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     guess_visible_ =
         make("guess visible", {Kind::buffer}, 4, {/* EXACT= */ 0, filtered, /* GUESS= */ 1},
@@ -120,16 +135,6 @@ void Culling::find_active(Commands& commands, uint32_t surface, float isovalue) 
     commands.dispatch(row, (workgroups + row - 1) / row);
 }
 
-bool Culling::has_moved(const Camera& camera, double degrees, double distance) const {
-    if (!last_camera_ || camera.orthographic != last_camera_->orthographic) return true;
-    const glm::dvec3 now = to_vec(camera.target) - to_vec(camera.position);
-    const glm::dvec3 before = to_vec(last_camera_->target) - to_vec(last_camera_->position);
-    const double moved = glm::length(to_vec(camera.position) - to_vec(last_camera_->position));
-    const double cosine = glm::dot(glm::normalize(now), glm::normalize(before));
-    return cosine < std::cos(glm::radians(degrees)) ||
-           moved > distance * std::max(glm::length(now), glm::length(before));
-}
-
 void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target) {
     commands.update(counters_, offsetof(shared::Counters, blocks_drawn), &ZERO, sizeof(ZERO));
     commands.fill(draws_, 0);
@@ -140,18 +145,15 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     target.visible_blocks = &visible_[1 - seen_];
     commands.fill(visible_[1 - seen_], 0);
     occlusion_->fit(target);
-    const bool cut = has_moved(frame.camera, CUT_DEGREES, CUT_DISTANCE);
-    const bool fast = !soon_drawn_ && has_moved(frame.camera, FAST_DEGREES, FAST_DISTANCE);
+    const bool cut = has_moved(last_camera_, frame.camera, CUT);
+    const bool fast = has_moved(last_camera_, frame.camera, dear_ ? ANY : FAST);
     if (cut) commands.fill(visible_[seen_], 0);
     last_camera_ = frame.camera;
-    const bool changed = changed_ || cut, guessed = changed && bool(guess_visible_);
-    changed_ = false;
     // Marks of drawn blocks are for all surfaces: likely ones can be drawn of a single one only.
-    // And something must be drawn before.
-    has_likely_ =
-        select_likely_ && frame.isovalues.size() == 1 && (changed || fast) && (guessed || !cut);
+    has_likely_ = select_likely_ && frame.isovalues.size() == 1 && (changed_ || fast);
     commands.barrier();
-    if (guessed) guess_visible(commands, frame);
+    if (guess_visible_ && (cut || (changed_ && rays_pay_))) guess_visible(commands, frame);
+    changed_ = false;
 }
 
 void Culling::guess_visible(Commands& commands, const Frame& frame) const {

@@ -55,7 +55,6 @@ public:
 
 private:
     void find_active(gpu::Commands& commands, uint32_t surface, float isovalue);
-    bool has_moved(const Camera& camera, double degrees, double distance) const;
     void guess_visible(gpu::Commands& commands, const Frame& frame) const;
     // The blocks drawn before select(unseen), of active groups.
     const gpu::Buffer& drawn() const { return has_likely_ ? drawn_before_ : visible_[seen_]; }
@@ -74,7 +73,8 @@ private:
     gpu::Buffer drawn_before_;            // the seen blocks and the likely ones
     bool changed_ = false;                // the surface, since the last frame
     bool has_likely_ = false;
-    bool soon_drawn_ = false;            // drawing all blocks takes no longer than a ray
+    bool dear_ = false;                  // blocks, compared with a look at the depth
+    bool rays_pay_ = false;              // after another isovalue or time step too
     std::optional<Camera> last_camera_;  // of the frame that marked visible blocks
 };
 

@@ -7,6 +7,7 @@
 
 const uint TEAM = 8;            // threads that look at a block together
 const uint SQUARES_ALONG = 12;  // at most, that a block is looked at in
+const uint AT_ONCE = 4;         // squares of a thread whose depths are on their way together
 
 bool is_orthographic() { return frame.depth_range.z != 0.0; }
 
@@ -66,16 +67,23 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
         enter[axis].x += dot(abs(enter[axis].yz), half_square);
         leave[axis].x -= dot(abs(leave[axis].yz), half_square);
     }
-    for (uint i = thread; i < size.x * size.y; i += TEAM) {
-        const uvec2 square = squares.first + uvec2(i % size.x, i / size.x);
-        const vec2 middle = vec2(2 * square + 1) * half_square - 1.0;
-        const vec3 at = vec3(1.0, middle);
-        const float entered = min(min(dot(enter[0], at), dot(enter[1], at)), dot(enter[2], at));
-        const float left = max(max(dot(leave[0], at), dot(leave[1], at)), dot(leave[2], at));
-        if (entered < left || (entered <= 0.0 && !is_orthographic())) continue;
-        const float t = (is_orthographic() ? -entered : 1.0 / entered) - slack;
-        const float nearest = reversed_depth(max(t, frame.depth_range.x)) * 1.00001 + 1e-7;
-        if (depth_of_square(eye, squares.level, offset, square) <= nearest) return true;
+    const uint total = size.x * size.y;
+    for (uint first = thread; first < total; first += AT_ONCE * TEAM) {
+        bool in_sight = false;
+        [[unroll]] for (uint n = 0; n < AT_ONCE; ++n) {
+            const uint i = min(first + n * TEAM, total - 1);
+            const uvec2 square = squares.first + uvec2(i % size.x, i / size.x);
+            const float drawn = depth_of_square(eye, squares.level, offset, square);
+            const vec3 at = vec3(1.0, vec2(2 * square + 1) * half_square - 1.0);
+            const float entered =
+                min(min(dot(enter[0], at), dot(enter[1], at)), dot(enter[2], at));
+            const float left = max(max(dot(leave[0], at), dot(leave[1], at)), dot(leave[2], at));
+            const float t = (is_orthographic() ? -entered : 1.0 / entered) - slack;
+            const float nearest = reversed_depth(max(t, frame.depth_range.x)) * 1.00001 + 1e-7;
+            const bool enters = entered >= left && (entered > 0.0 || is_orthographic());
+            in_sight = enters && drawn <= nearest ? true : in_sight;
+        }
+        if (in_sight) return true;
     }
     return false;
 }
