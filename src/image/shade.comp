@@ -35,24 +35,33 @@ vec2 span_in_cell(Ray ray, ivec3 cell) {
     return vec2(max(max(enter.x, enter.y), enter.z), min(min(leave.x, leave.y), leave.z));
 }
 
-// A point on the surface: where along the ray, and whether the ray enters there (values rise).
+// A point on the surface: where along the ray, and whether the ray enters there (values rise); the
+// cell there, unless FILTERED.
 struct Hit {
     float t;
     bool entering, refined;
+    ivec3 cell;
+    float corners[8];
 };
 
 Hit crossing_in_cell(Ray ray, ivec3 cell, float t, float iso) {
+    Hit hit;
+    hit.t = t;
+    hit.entering = true;
+    hit.refined = false;
+    hit.cell = cell;
+    load_cell(brick_of(cell), cell, hit.corners);
     const vec2 span = span_in_cell(ray, cell);
-    Hit hit = Hit(t, true, false);
     if (!(span.x < span.y)) return hit;
-    float corners[8];
-    load_cell(brick_of(cell), cell, corners);
     const vec3 from = ray.origin + span.x * ray.direction - vec3(cell);
     const vec3 to = ray.origin + span.y * ray.direction - vec3(cell);
-    const CellLine line = cell_line(corners, from, to, iso);
+    const CellLine line = cell_line(hit.corners, from, to, iso);
     float s;
     if (!nearest_crossing(line, (t - span.x) / (span.y - span.x), s)) return hit;
-    return Hit(mix(span.x, span.y, s), slope_at(line.cubic, s) > 0.0, true);
+    hit.t = mix(span.x, span.y, s);
+    hit.entering = slope_at(line.cubic, s) > 0.0;
+    hit.refined = true;
+    return hit;
 }
 
 // The trilinear surface nearest to t along the ray, in the cell there or else in the cells before
@@ -90,7 +99,10 @@ Hit refine_hit_filtered(Ray ray, float t, float iso) {
         value_a = sample_on_grid(brick, clamp(at_a, vec3(0.0), last)) - iso;
         value_b = sample_on_grid(brick, clamp(at_b, vec3(0.0), last)) - iso;
     }
-    Hit hit = Hit(t, value_b > value_a, (value_a < 0.0) != (value_b < 0.0));
+    Hit hit;
+    hit.t = t;
+    hit.entering = value_b > value_a;
+    hit.refined = (value_a < 0.0) != (value_b < 0.0);
     if (!hit.refined) return hit;
     const float t1 = (a * value_b - b * value_a) / (value_b - value_a);
     const float value = sample_on_grid(brick, ray.origin + t1 * ray.direction) - iso;
@@ -119,7 +131,8 @@ vec4 shade(Ray ray, Hit hit, vec3 surface_color) {
         const float near = frame.depth_range.x, far = frame.depth_range.y;
         return vec4(vec3(mix(0.95, 0.05, clamp((hit.t - near) / (far - near), 0.0, 1.0))), 1.0);
     }
-    const vec3 gradient = FILTERED ? field_gradient_filtered(p) : field_gradient(p);
+    const vec3 gradient = FILTERED ? field_gradient_filtered(p)
+                                   : field_gradient(hit.cell, hit.corners, p - vec3(hit.cell));
     const bool outward = hit.refined ? hit.entering : dot(gradient, ray.direction) > 0.0;
     const vec3 normal = world_normal(gradient, ray.direction, outward);
     if (frame.size.w == NORMALS) return vec4(0.5 + 0.5 * normal, 1.0);

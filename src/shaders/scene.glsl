@@ -16,8 +16,7 @@ layout(set = 0, binding = BIND_GRID, std140) uniform GridBlock { GridInfo grid; 
 layout(set = 0, binding = BIND_BRICKS) uniform texture3D bricks[MAX_BRICKS];
 layout(set = 0, binding = BIND_SAMPLER) uniform sampler linear_sampler;
 // The only brick's memory; rows and slices begin at whole words.
-layout(set = 0, binding = BIND_VOXELS) readonly buffer Voxels16 { uint16_t voxels_16[]; };
-layout(set = 0, binding = BIND_VOXELS) readonly buffer Voxels32 { uint voxels_32[]; };
+layout(set = 0, binding = BIND_VOXELS) readonly buffer Voxels { uint voxels[]; };
 
 #ifdef SCENE_WRITES_MINMAX
 #define MINMAX_ACCESS

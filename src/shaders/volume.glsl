@@ -29,9 +29,9 @@ uint voxel_index(uvec3 p) { return p.x + grid.voxels.w * p.y + grid.brick_cells.
 
 float load_voxel(ivec3 position) {
     const uint index = voxel_index(uvec3(position));
-    if (VOXEL_BITS == 8) return float(uint(voxels_16[index >> 1]) >> 8 * (index & 1u) & 0xffu);
-    if (VOXEL_BITS == 16) return float(uint(voxels_16[index]));
-    return uintBitsToFloat(voxels_32[index]);
+    if (VOXEL_BITS == 8) return float(voxels[index >> 2] >> 8 * (index & 3u) & 0xffu);
+    if (VOXEL_BITS == 16) return float(voxels[index >> 1] >> 16 * (index & 1u) & 0xffffu);
+    return uintBitsToFloat(voxels[index]);
 }
 
 float fetch_texel(uint brick, ivec3 texel) {
@@ -115,19 +115,16 @@ vec3 voxel_gradient(Brick brick, ivec3 position) {
     return gradient;
 }
 
-// The gradient at p: the voxels' gradients, interpolated; the same as central differences of the
-// trilinear field at a distance of one voxel. Of a cell's corners and the voxels next to them: 32.
-vec3 field_gradient(vec3 p) {
-    const ivec3 cell = cell_of(p);
-    const vec3 f = p - vec3(cell);
+// The gradient at f, 0 to 1 along each axis, within a cell of these corners: the voxels' gradients,
+// interpolated; the same as central differences of the trilinear field at a distance of one voxel.
+// Of the corners and the voxels next to them: 32.
+vec3 field_gradient(ivec3 cell, float corners[8], vec3 f) {
     const Brick brick = brick_of(cell);
     const float least = grid.range.x;
     const ivec3 low = max(cell - 1, 0), high = min(cell + 2, ivec3(grid.voxels.xyz) - 1);
     // At a corner: 1 / the distance of the two voxels whose difference is taken.
     const vec3 scale_low = 1.0 / vec3(max(min(cell + 1, high) - low, 1));
     const vec3 scale_high = 1.0 / vec3(max(high - cell, 1));
-    float corners[8];
-    load_cell(brick, cell, corners);
     for (int c = 0; c < 8; ++c) corners[c] = max(corners[c], least);
     vec3 gradient = vec3(0.0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -150,6 +147,13 @@ vec3 field_gradient(vec3 p) {
         }
     }
     return gradient;
+}
+
+vec3 field_gradient(vec3 p) {
+    const ivec3 cell = cell_of(p);
+    float corners[8];
+    load_cell(brick_of(cell), cell, corners);
+    return field_gradient(cell, corners, p - vec3(cell));
 }
 
 // Through the sampler, at the nearest point of the grid of 1/256 voxels that texture units filter

@@ -104,7 +104,7 @@ void load_row(Brick brick, ivec3 start, int last, out uint words[ROW_WORDS]) {
     if (VOXEL_FORMAT >= VOXELS_IN_BUFFER) {
         const uint index = voxel_index(uvec3(start)) / VALUES_OF_WORD;
         [[unroll]] for (uint i = 0; i < ROW_WORDS; ++i)
-            words[i] = voxels_32[min(index + i, voxels_32.length() - 1)];
+            words[i] = voxels[min(index + i, voxels.length() - 1)];
         return;
     }
 #endif
