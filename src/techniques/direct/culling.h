@@ -27,8 +27,8 @@ public:
     // blocks in target.visible_blocks.
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
     enum class Select : uint32_t { all, seen, likely, unseen };
-    // After such a change, and when the camera moves fast, seen blocks leave holes, and through a
-    // hole all that is behind would be drawn. So likely blocks are drawn before: those that
+    // After such a change, and when the camera moves, seen blocks leave holes, and through a hole
+    // all that is behind would be drawn. So likely blocks are drawn before: those that
     // surfaces around the holes do not hide. True if this frame does so.
     bool has_likely() const { return has_likely_; }
     // Before select(likely), with `surfaces`, and before select(unseen): looks at the depth drawn

@@ -2,9 +2,9 @@
 // direct: Kreskowski, Rendle and Froehlich, "Efficient Direct Isosurface Rasterization of Scalar
 // Volumes", 2022. Blocks that the isovalue crosses are listed once an isovalue (find active). Every
 // frame (figure 2), those that the last frame saw are extracted and rasterized at once; then those
-// that they do not hide. When the camera jumps or is fast, or with another isovalue or time
-// step, what the last frame saw says little: then what rays hit is drawn with it, and then blocks
-// that surfaces around do not hide. Nothing is stored.
+// that they do not hide. When the camera jumps, or with another isovalue or time step, what the
+// last frame saw says little: then what rays hit is drawn with it. What is drawn then, or while the
+// camera moves, has holes: blocks that surfaces around do not hide come next. Nothing is stored.
 #include <isorast/error.h>
 
 #include <array>
