@@ -16,7 +16,8 @@
 
 layout(local_size_x = CULL_GROUPS * GROUP_BLOCKS) in;
 
-layout(constant_id = 1) const bool TWO_SIZES = false;  // a list of its own for large blocks
+// Workgroups that share a large block; 0: large blocks have no list of their own.
+layout(constant_id = 1) const uint LARGE_PARTS = 0;
 const uint ALL = 0, SEEN = 1, TESTED = 2;
 #ifdef HIZ
 const uint SELECT = 3;
@@ -95,8 +96,9 @@ void list(uint size, uint i, uint entry) {
     if (place % DRAW_ROW == 0) atomicMax(draws[draw].y, place / DRAW_ROW + 1);
     // A workgroup for each block of a quartet, so that small volumes fill the device; in long lists
     // one for all, as half of those would find nothing to do.
-    if (place == 0) atomicAdd(draws[draw].z, 4u);
-    if (place == LONG && TWO_SIZES) atomicAdd(draws[draw].z, uint(-3));
+    const uint parts = size == 0 ? 1 : LARGE_PARTS;
+    if (place == 0) atomicAdd(draws[draw].z, 4 * parts);
+    if (place == LONG && LARGE_PARTS != 0) atomicAdd(draws[draw].z, -3 * parts);
 }
 
 // Widens draws of a list that has become `quartets` long: the first row of each is full, or ends
@@ -134,7 +136,7 @@ void main() {
                 if (look) candidates[atomicAdd(candidate_total, 1)] = lane << 5 | place;
 #endif
                 if (!look) atomicOr(drawn_masks[lane], 1u << place);
-                if (TWO_SIZES && large) atomicOr(large_masks[lane], 1u << place);
+                if (LARGE_PARTS != 0 && large) atomicOr(large_masks[lane], 1u << place);
             }
         }
         barrier();

@@ -49,6 +49,8 @@ public:
     const gpu::Buffer& drawn_blocks() const { return drawn_blocks_; }
     const gpu::Buffer& draws() const { return draws_; }
     uint32_t draw_count() const { return draw_count_; }
+    // Workgroups along z for each large block.
+    uint32_t large_parts() const { return large_parts_; }
     uint32_t first_draw(Size size) const { return first_draw_ + uint32_t(size) * draw_count_; }
     const gpu::Buffer& counters() const { return counters_; }
     uint64_t gpu_bytes() const;
@@ -60,7 +62,7 @@ private:
     const gpu::Buffer& drawn() const { return has_likely_ ? drawn_before_ : visible_[seen_]; }
 
     const Grid& grid_;
-    uint32_t sizes_, draw_count_ = 0, first_draw_ = 0;
+    uint32_t sizes_, large_parts_, draw_count_ = 0, first_draw_ = 0;
     std::unique_ptr<OcclusionTest> occlusion_;
     gpu::Pipeline find_active_, guess_visible_;
     std::array<gpu::Pipeline, 3> select_;     // one for each SELECT of cull.comp

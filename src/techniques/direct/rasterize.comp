@@ -13,9 +13,9 @@
 // variant rasterize_large: -DLARGE
 // variant rasterize_large_numbered: -DLARGE -DNUMBERED
 // variant rasterize_large_counting: -DLARGE -DCOUNTING
-// Workgroup: one block of 8^3 cells. Thread: rows of voxels, then of cells, then cells, then
-// vertices, then triangles; LARGE, for blocks that are large in the picture: pixels. Out: the depth
-// of the surface's triangles there. Extraction and rasterization in one compute shader: no mesh
+// Workgroup: one block of 8^3 cells, or, LARGE, for blocks that are large in the picture, a part of
+// it. Thread: rows of voxels, then of cells, then cells, then vertices, then
+// triangles; LARGE: pixels. Out: the depth of the surface's triangles there. Extraction and rasterization in one compute shader: no mesh
 // shaders, no graphics queue.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
@@ -37,6 +37,12 @@ layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 // Whether depth is the plane through the vertices' positions on the grid of 1/256 pixels, as GPUs
 // have it, or through those before rounding, as lavapipe has it.
 layout(constant_id = 2) const bool SNAPPED = false;
+// Workgroups that share a block, a slab each.
+#ifdef LARGE
+layout(constant_id = 4) const uint PARTS = 1;
+#else
+const uint PARTS = 1;
+#endif
 
 // Every pixel of every triangle goes through here.
 void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
@@ -118,11 +124,13 @@ void load_row(Brick brick, ivec3 start, int last, out uint words[ROW_WORDS]) {
     }
 }
 
+uint first_row(Slab slab) { return first_corner_row(slab) + gl_LocalInvocationIndex; }
+
 // A row of nine corners a thread: their values and their signs.
-void load_rows(uvec3 first, float iso) {
+void load_rows(Slab slab, uvec3 first, float iso) {
     const Brick brick = brick_of(ivec3(first));
     const int last = int(grid.voxels.x) - 1 - int(first.x);
-    for (uint row = gl_LocalInvocationIndex; row < ROWS; row += THREADS) {
+    for (uint row = first_row(slab); row < end_corner_row(slab); row += THREADS) {
         uint words[ROW_WORDS], bits = 0;
         load_row(brick, clamp_to_volume(ivec3(first + uvec3(0, row % 9, row / 9))), last, words);
         [[unroll]] for (uint x = 0; x < 9; ++x)
@@ -136,8 +144,6 @@ void load_rows(uvec3 first, float iso) {
 float value_at(uint row, uint x) {
     return unpack(values[ROW_WORDS * row + x / VALUES_OF_WORD], x);
 }
-
-uint first_row(Slab slab) { return first_corner_row(slab) + gl_LocalInvocationIndex; }
 
 // The edges of a row's vertices, up to the vertex `end`.
 void list_row(uint row, uint crossed, uint end) {
@@ -274,11 +280,12 @@ void rasterize(uint eye, uvec3 first, float iso) {
 }
 #endif
 
-void draw_block(uvec3 first, float iso) {
+void draw_block(uint part, uvec3 first, float iso) {
     const ivec3 left = cells_left(first);
-    load_rows(first, iso);
-    Slab slab = Slab(0, CELL_ROWS);
-    while (slab.first < CELL_ROWS) {
+    Slab slab = Slab(part * CELL_ROWS / PARTS, CELL_ROWS / PARTS);
+    const uint end = slab.first + slab.count;
+    load_rows(slab, first, iso);
+    while (slab.first < end) {
         if (gl_LocalInvocationIndex == 0) row_totals = triangle_total = 0;
 #ifndef LARGE
         find_origin(0, first);
@@ -305,12 +312,12 @@ void draw_block(uvec3 first, float iso) {
     }
 }
 
-// A workgroup draws one block of its quartet, or all.
+// A workgroup draws one block of its quartet, or all, or a part of each.
 void main() {
     const float iso = frame.surfaces[surface].w;
-    for (uint n = gl_WorkGroupID.z; n < 4; n += gl_NumWorkGroups.z) {
+    for (uint n = gl_WorkGroupID.z / PARTS; n < 4; n += gl_NumWorkGroups.z / PARTS) {
         uvec3 block;
         if (!my_block(n, block)) return;
-        draw_block(block * BLOCK, iso);
+        draw_block(gl_WorkGroupID.z % PARTS, block * BLOCK, iso);
     }
 }
