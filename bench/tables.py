@@ -96,14 +96,15 @@ class Results:
         return found + ([over("cut", cold, warm)] if cold and warm else [])
 
     def formulas(self):
-        """{formula: [(side, volume)]}, in the order of the sides."""
+        """{formula: [(side, volume)]}, in the order of the sides; if some come in several, those alone."""
         found = {}
         for volume in self.volumes:
             parts = volume.split(":")
             if len(parts) > 1 and parts[1].isdigit():
                 name = " ".join([parts[0], *(part.split("=")[1] for part in parts[2:])])
                 found.setdefault(name, []).append((int(parts[1]), volume))
-        return {name: sorted(sides) for name, sides in found.items()}
+        several = {name: sides for name, sides in found.items() if len(sides) > 1}
+        return {name: sorted(sides) for name, sides in (several or found).items()}
 
 
 def doubling(sides, times):
