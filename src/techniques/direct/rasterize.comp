@@ -14,9 +14,9 @@
 // variant rasterize_large_numbered: -DLARGE -DNUMBERED
 // variant rasterize_large_counting: -DLARGE -DCOUNTING
 // Workgroup: one block of 8^3 cells, or, LARGE, for blocks that are large in the picture, a part of
-// it. Thread: rows of voxels, then of cells, then cells, then vertices, then
-// triangles; LARGE: pixels. Out: the depth of the surface's triangles there. Extraction and rasterization in one compute shader: no mesh
-// shaders, no graphics queue.
+// it. Thread: rows of voxels, then of cells, then cells, then vertices, then triangles; LARGE:
+// pixels. Out: the depth of the surface's triangles there. Extraction and rasterization in one
+// compute shader: no mesh shaders, no graphics queue.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
