@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // variant build_pyramid_surfaces: -DSURFACES
 // Workgroup: 32x32 pixels of one eye. Thread: 2x2 of them. Out: the farthest depth (least: depth is
-// reversed) of squares of 2 to 32 pixels. SURFACES: of their pixels that have a
-// surface; 0 only if none has.
+// reversed) of squares of 2 to 32 pixels. SURFACES: of their pixels that have a surface; 0 only if
+// none has.
 #include "shaders/scene.glsl"
 #include "shaders/pyramid.glsl"
 

@@ -149,6 +149,7 @@ vec3 field_gradient(ivec3 cell, float corners[8], vec3 f) {
     return gradient;
 }
 
+// The same at p.
 vec3 field_gradient(vec3 p) {
     const ivec3 cell = cell_of(p);
     float corners[8];

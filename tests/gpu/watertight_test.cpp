@@ -26,11 +26,11 @@ constexpr uint32_t SNAPPED = 1;  // as on a GPU
 
 class Counting {
 public:
-    // `sums`: lists are made by many threads and sums across subgroups, as on GPUs; else by few, as
-    // on CPUs.
+    // `sums`: lists are made by many threads and sums across subgroups, and eight workgroups share
+    // a large block, as on GPUs; else few threads and one, as on CPUs.
     Counting(const gpu::Device& device, const Volume& volume, Size size, bool sums)
         : grid_(device, series_of({&volume, 1}), 0, 0),
-          culling_(grid_, make_depth_pyramid(grid_), /* two_sizes= */ true),
+          culling_(grid_, make_depth_pyramid(grid_), large_parts(sums)),
           placement_{volume.affine, volume.dims},
           bytes_(uint64_t{4} * size.width * size.height),
           table_(upload_triangle_table(device)) {
@@ -51,8 +51,9 @@ public:
         for (size_t i = 0; i < code.size(); ++i)
             pipelines_[i] = gpu::Pipeline::compute(
                 device,
-                grid_.pipeline_info("counting", bindings, 12,
-                                    {/* CLIPPED= */ 0, SNAPPED, sums ? 128u : 8u}),
+                grid_.pipeline_info(
+                    "counting", bindings, 12,
+                    {/* CLIPPED= */ 0, SNAPPED, sums ? 128u : 8u, large_parts(sums)}),
                 code[i]);
         gpu::run_once(device,
                       [&](gpu::Commands& commands) { commands.discard_to_general(counts_); });
@@ -82,6 +83,8 @@ public:
     }
 
 private:
+    static uint32_t large_parts(bool sums) { return sums ? 8 : 1; }
+
     Grid grid_;
     Culling culling_;
     Placement placement_;

@@ -47,7 +47,7 @@ public:
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override {
         for (const Size size : {Size::large, Size::small}) {
-            commands.bind(pipeline(frame, size, culling.large_parts()),
+            commands.bind(pipeline(frame, size),
                           {culling.draws(), culling.drawn_blocks(), triangle_table_,
                            gpu::Binding(target.depth.bits_view()), target.surfaces});
             const uint32_t first = culling.first_draw(size);
@@ -59,10 +59,13 @@ public:
         commands.barrier();
     }
 
+    // Large blocks are few, and have many pixels. CPU drivers have few threads.
+    uint32_t large_parts() const override { return grid_.device().is_cpu() ? 1 : 8; }
+
     uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
 
 private:
-    const gpu::Pipeline& pipeline(const Frame& frame, Size size, uint32_t large_parts) {
+    const gpu::Pipeline& pipeline(const Frame& frame, Size size) {
         const bool numbered = frame.isovalues.size() > 1, clipped = !frame.clips.empty();
         const bool large = size == Size::large;
         gpu::Pipeline& pipeline = pipelines_[size_t(numbered) + 2 * clipped + 4 * large];
@@ -74,7 +77,7 @@ private:
         pipeline =
             gpu::Pipeline::compute(grid_.device(),
                                    grid_.pipeline_info("rasterize", bindings, sizeof(Push),
-                                                       {clipped, !cpu, threads, large_parts}),
+                                                       {clipped, !cpu, threads, large_parts()}),
                                    code(numbered, large));
         return pipeline;
     }

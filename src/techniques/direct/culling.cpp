@@ -27,12 +27,9 @@ constexpr uint32_t ZERO = 0;
 constexpr uint32_t LISTS = 3;
 
 // With fewer blocks than this (a volume of 256^3), drawing in more steps costs more than drawing
-// all blocks at once. A GPU's compute rasterizer draws 30000 while the last ray is waited for: more
+// all blocks at once. A GPU's compute rasterizer draws 20000 while the last ray is waited for: more
 // of them (512^3), and as MANY (1024^3) to cast rays after each change.
 constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18, MANY = 1 << 20;
-
-// Workgroups for a block that is large in the picture: such blocks are few, and have many pixels.
-constexpr uint32_t LARGE_PARTS_ON_GPU = 8;
 
 // Rays that guess: one in a square of so many pixels a side.
 constexpr int32_t RAY_SIDE = 4;
@@ -61,13 +58,8 @@ bool has_moved(const std::optional<Camera>& from, const Camera& to, Motion most)
 
 }  // namespace
 
-Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, bool two_sizes)
-    : grid_(grid),
-      sizes_(two_sizes ? 2 : 1),
-      large_parts_(!two_sizes               ? 0
-                   : grid.device().is_cpu() ? 1
-                                            : LARGE_PARTS_ON_GPU),
-      occlusion_(std::move(occlusion)) {
+Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t large_parts)
+    : grid_(grid), sizes_(large_parts != 0 ? 2 : 1), occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
     const uint64_t quartets = uint64_t{shared::QUARTETS} * groups;
@@ -88,17 +80,17 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, boo
     find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
     const std::vector lists(7, Kind::buffer);
     for (uint32_t which = 0; which < select_.size(); ++which)
-        select_[which] = make("cull", lists, 8, {large_parts_, which}, cull_comp);
+        select_[which] = make("cull", lists, 8, {large_parts, which}, cull_comp);
     if (occlusion_->kind() == Occlusion::hiz)
-        select_hiz_ = make("cull", lists, 8, {large_parts_}, cull_hiz);
+        select_hiz_ = make("cull", lists, 8, {large_parts}, cull_hiz);
     const uint32_t blocks = grid.info().blocks.w;
-    const bool soon = two_sizes && !device.is_cpu();
+    const bool hardware = sizes_ == 1, soon = !hardware && !device.is_cpu();
     if (blocks < (soon ? WORTH_A_STEP_IF_SOON : WORTH_A_STEP)) return;
-    dear_ = !two_sizes || blocks >= MANY;
+    dear_ = hardware || blocks >= MANY;
     rays_pay_ = !soon || blocks >= MANY;
     if (occlusion_->kind() == Occlusion::hiz) {
         drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
-        select_likely_ = make("cull", lists, 8, {large_parts_}, cull_surfaces);
+        select_likely_ = make("cull", lists, 8, {large_parts}, cull_surfaces);
     }
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     guess_visible_ =

@@ -15,8 +15,8 @@ namespace isorast {
 
 class Culling {
 public:
-    // `two_sizes`: whether large blocks get their own list.
-    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, bool two_sizes);
+    // `large_parts`: see BlockRasterizer.
+    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t large_parts);
 
     // The active groups of each surface: once an isovalue.
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
@@ -28,8 +28,8 @@ public:
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
     enum class Select : uint32_t { all, seen, likely, unseen };
     // After such a change, and when the camera moves, seen blocks leave holes, and through a hole
-    // all that is behind would be drawn. So likely blocks are drawn before: those that
-    // surfaces around the holes do not hide. True if this frame does so.
+    // all that is behind would be drawn. So likely blocks are drawn before: those that surfaces
+    // around the holes do not hide. True if this frame does so.
     bool has_likely() const { return has_likely_; }
     // Before select(likely), with `surfaces`, and before select(unseen): looks at the depth drawn
     // so far. test(): before select(unseen), of each surface.
@@ -49,8 +49,6 @@ public:
     const gpu::Buffer& drawn_blocks() const { return drawn_blocks_; }
     const gpu::Buffer& draws() const { return draws_; }
     uint32_t draw_count() const { return draw_count_; }
-    // Workgroups along z for each large block.
-    uint32_t large_parts() const { return large_parts_; }
     uint32_t first_draw(Size size) const { return first_draw_ + uint32_t(size) * draw_count_; }
     const gpu::Buffer& counters() const { return counters_; }
     uint64_t gpu_bytes() const;
@@ -62,7 +60,7 @@ private:
     const gpu::Buffer& drawn() const { return has_likely_ ? drawn_before_ : visible_[seen_]; }
 
     const Grid& grid_;
-    uint32_t sizes_, large_parts_, draw_count_ = 0, first_draw_ = 0;
+    uint32_t sizes_, draw_count_ = 0, first_draw_ = 0;
     std::unique_ptr<OcclusionTest> occlusion_;
     gpu::Pipeline find_active_, guess_visible_;
     std::array<gpu::Pipeline, 3> select_;     // one for each SELECT of cull.comp

@@ -66,6 +66,7 @@ public:
     void clear(Commands& commands, const Frame& frame, const Target& target) const override;
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override;
+    uint32_t large_parts() const override { return 0; }
     uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
 
 private:
