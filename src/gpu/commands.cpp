@@ -224,6 +224,7 @@ void Commands::begin_rendering(const std::vector<const Texture*>& colors, const 
     const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                .renderArea = {{0, 0}, {size.width, size.height}},
                                .layerCount = layer ? 1 : depth->layers(),
+                               .viewMask = layer ? 0 : device_.view_mask(depth->layers()),
                                .colorAttachmentCount = uint32_t(color_infos.size()),
                                .pColorAttachments = color_infos.data(),
                                .pDepthAttachment = &depth_info};

@@ -135,6 +135,7 @@ Device::Device(const HostDevice& host)
     features_ = {.storage_16bit = true,
                  .nonuniform_textures = host.nonuniform_textures,
                  .mesh_shaders = host.mesh_shaders,
+                 .mesh_multiview = host.mesh_multiview,
                  .dynamic_rendering = host.dynamic_rendering,
                  .storage_without_format = host.storage_without_format,
                  .fragment_stores = host.fragment_stores,
@@ -188,6 +189,7 @@ void Device::create_device() {
     features_ = supported_features(physical_);
     features_.mesh_shaders = features_.mesh_shaders && info_.why_not_hardware.empty();
     features_.representative_test = features_.representative_test && features_.mesh_shaders;
+    features_.mesh_multiview = features_.mesh_multiview && features_.mesh_shaders;
 
     // Chain only the structures that this device's version and extensions know.
     VkPhysicalDeviceRepresentativeFragmentTestFeaturesNV representative{
@@ -197,10 +199,15 @@ void Device::create_device() {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT,
         .pNext = features_.representative_test ? &representative : nullptr,
         .taskShader = VK_TRUE,
-        .meshShader = VK_TRUE};
+        .meshShader = VK_TRUE,
+        .multiviewMeshShader = features_.mesh_multiview};
+    VkPhysicalDeviceMultiviewFeatures multiview{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES,
+        .pNext = features_.mesh_shaders ? &mesh : nullptr,
+        .multiview = features_.mesh_multiview};
     VkPhysicalDeviceDynamicRenderingFeatures rendering{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES,
-        .pNext = features_.mesh_shaders ? &mesh : nullptr,
+        .pNext = &multiview,
         .dynamicRendering = features_.dynamic_rendering};
     VkPhysicalDeviceDescriptorIndexingFeatures indexing{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES,

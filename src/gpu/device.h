@@ -14,11 +14,16 @@ struct Features {
     bool storage_16bit = false;        // required: 16-bit entries in block lists
     bool nonuniform_textures = false;  // volumes of several bricks
     bool mesh_shaders = false;
+    bool mesh_multiview = false;  // mesh shaders draw both eyes as views
     bool dynamic_rendering = false;
     bool storage_without_format = false;  // formulas sampled on the GPU
     bool fragment_stores = false;         // occlusion tests by raster proxies
     bool representative_test = false;     // the same, faster: VK_NV_representative_fragment_test
 };
+
+// How one pass draws into a target: for one eye, or for both: primitives that name their layer, or
+// views of one drawing.
+enum class Eyes : uint8_t { one, layers, views };
 
 // Extension functions, loaded by hand.
 struct Functions {
@@ -54,6 +59,11 @@ public:
     const Functions& functions() const { return functions_; }
     const DeviceInfo& info() const { return info_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    Eyes eyes(uint32_t layers) const {
+        if (layers == 1) return Eyes::one;
+        return features_.mesh_multiview ? Eyes::views : Eyes::layers;
+    }
+    uint32_t view_mask(uint32_t layers) const { return eyes(layers) == Eyes::views ? 3 : 0; }
     uint64_t max_allocation() const { return info_.max_allocation_bytes; }
     // Bits of a timestamp that count; 0 when the queue has none.
     uint32_t timestamp_bits() const { return timestamp_bits_; }

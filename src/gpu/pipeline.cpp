@@ -155,6 +155,7 @@ Pipeline Pipeline::graphics(const Device& device, const PipelineInfo& info,
     const VkPipelineRenderingCreateInfo rendering{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
         .pNext = attachments.representative ? &representative : nullptr,
+        .viewMask = device.view_mask(attachments.layers),
         .colorAttachmentCount = uint32_t(attachments.colors.size()),
         .pColorAttachmentFormats = attachments.colors.data(),
         .depthAttachmentFormat = attachments.depth};

@@ -36,6 +36,7 @@ struct Attachments {
     std::vector<VkFormat> colors;
     VkFormat depth = VK_FORMAT_UNDEFINED;
     bool writes_depth = true;
+    uint32_t layers = 1;          // as the images have
     bool representative = false;  // one fragment that passes stands for its primitive
 };
 

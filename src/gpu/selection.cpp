@@ -116,15 +116,24 @@ Features supported_features(VkPhysicalDevice physical) {
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES};
     VkPhysicalDeviceMeshShaderFeaturesEXT mesh{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT};
+    VkPhysicalDeviceMultiviewFeatures multiview{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES, &mesh};
     VkPhysicalDeviceFeatures2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &storage};
     if (properties.apiVersion >= VK_API_VERSION_1_2) storage.pNext = &indexing;
     if (properties.apiVersion >= VK_API_VERSION_1_3) indexing.pNext = &rendering;
     const bool mesh_extension = has_extension(physical, VK_EXT_MESH_SHADER_EXTENSION_NAME);
-    if (mesh_extension && indexing.pNext) rendering.pNext = &mesh;
+    if (mesh_extension && indexing.pNext) rendering.pNext = &multiview;
     vkGetPhysicalDeviceFeatures2(physical, &all);
+    VkPhysicalDeviceMeshShaderPropertiesEXT most{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_PROPERTIES_EXT};
+    VkPhysicalDeviceProperties2 limits{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    if (mesh_extension) limits.pNext = &most;
+    vkGetPhysicalDeviceProperties2(physical, &limits);
     return {.storage_16bit = storage.storageBuffer16BitAccess == VK_TRUE,
             .nonuniform_textures = indexing.shaderSampledImageArrayNonUniformIndexing == VK_TRUE,
             .mesh_shaders = mesh.taskShader && mesh.meshShader,
+            .mesh_multiview = mesh.multiviewMeshShader && multiview.multiview &&
+                              most.maxMeshMultiviewViewCount >= 2,
             .dynamic_rendering = rendering.dynamicRendering == VK_TRUE,
             .storage_without_format = all.features.shaderStorageImageWriteWithoutFormat &&
                                       all.features.shaderStorageImageExtendedFormats,

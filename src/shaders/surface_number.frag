@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // variant surface_number_stereo_frag: -DSTEREO
+// variant surface_number_multiview_frag: -DMULTIVIEW
 // Thread: one fragment. Out: the number of its surface; only drawn where there are several
 // surfaces.
 #include "shaders/scene.glsl"

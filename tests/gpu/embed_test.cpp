@@ -26,6 +26,7 @@ HostDevice host_of(const gpu::Device& device) {
     host.nonuniform_textures = device.features().nonuniform_textures;
     host.mesh_shaders = device.features().mesh_shaders;
     host.dynamic_rendering = device.features().dynamic_rendering;
+    host.fragment_stores = device.features().fragment_stores;
     return host;
 }
 
@@ -97,6 +98,36 @@ TEST_F(GpuTest, AHostGetsTheDepthAsItWants) {
         EXPECT_GT(std::ranges::count_if(depths, [](float depth) { return depth > 0; }), 1000);
         EXPECT_EQ(std::memcmp(image.data<float>(), drawn.data<float>(), bytes), 0) << lane.name;
         EXPECT_EQ(std::memcmp(buffer.data<float>(), drawn.data<float>(), bytes), 0) << lane.name;
+    }
+}
+
+// Without mesh_multiview a host's eyes are layers; where the device has it, the other's are views.
+TEST_F(GpuTest, AHostsEyesAreLayersOrViews) {
+    if (GRAPHICS_CRASHES) GTEST_SKIP();
+    Gpu adopted(host_of(gpu.device()));
+    EXPECT_EQ(adopted.device().view_mask(2), 0u);
+    const Volume volume = reference::sampled("noise:56:octaves=3:type=u8");
+    Frame clipped = frame(orbit(volume, 50, 20), {0.5});
+    clipped.stereo = {.mode = StereoMode::layers, .separation = 0.2, .convergence = 2};
+    Frame plain = clipped, numbered = clipped, forward = clipped;
+    clipped.clips = {{.normal = {1, 0.3, 0}, .offset = 0.1}};
+    numbered.isovalues = {0.45, 0.6};
+    forward.shading = Shading::forward;
+    std::vector<RendererOptions> all;
+    for (const Lane& lane : lanes(volume))
+        all.push_back(lane.options);
+    if (gpu.device().features().mesh_shaders)
+        all.push_back({.technique = "direct", .occlusion = Occlusion::raster});
+    for (const RendererOptions& options : all) {
+        Renderer host(adopted, volume, options), own(gpu, volume, options);
+        const bool can_forward =
+            options.technique == "direct" && own.rasterizer() == Rasterizer::hardware;
+        for (const Frame& f : {plain, clipped, numbered, forward}) {
+            if (f.shading == Shading::forward && !can_forward) continue;
+            const Image a = host.render(f), b = own.render(f);
+            EXPECT_EQ(a.rgba, b.rgba) << options.technique;
+            EXPECT_EQ(a.depth, b.depth) << options.technique;
+        }
     }
 }
 

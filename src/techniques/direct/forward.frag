@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // variant forward_stereo_frag: -DSTEREO
+// variant forward_multiview_frag: -DMULTIVIEW
 // Thread: one fragment. Out: its colour, from the mesh shader's normals: the paper's own way to
 // shade (Kreskowski 2022, section 4, "Shading").
 #include "shaders/scene.glsl"

@@ -7,19 +7,25 @@
 #include <array>
 
 #include "clip_frag.h"
+#include "clip_multiview_frag.h"
 #include "clip_stereo_frag.h"
 #include "extract_forward_mesh.h"
+#include "extract_forward_multiview_mesh.h"
 #include "extract_forward_stereo_mesh.h"
 #include "extract_mesh.h"
+#include "extract_multiview_mesh.h"
 #include "extract_stereo_mesh.h"
 #include "extract_subgroups_mesh.h"
+#include "extract_subgroups_multiview_mesh.h"
 #include "extract_subgroups_stereo_mesh.h"
 #include "extract_subgroups_task.h"
 #include "extract_task.h"
 #include "forward_frag.h"
+#include "forward_multiview_frag.h"
 #include "forward_stereo_frag.h"
 #include "gpu/device.h"
 #include "surface_number_frag.h"
+#include "surface_number_multiview_frag.h"
 #include "surface_number_stereo_frag.h"
 #include "techniques/direct/rasterizer.h"
 
@@ -29,6 +35,7 @@ namespace {
 
 using gpu::Commands;
 using gpu::Kind;
+using Code = std::span<const uint32_t>;
 
 struct Push {
     uint32_t draw, surface, first_draw;
@@ -71,7 +78,7 @@ public:
 
 private:
     const gpu::Pipeline& pipeline(const Frame& frame);
-    std::span<const uint32_t> mesh_code(bool forward, bool stereo) const;
+    Code mesh_code(bool forward, gpu::Eyes eyes) const;
 
     const Grid& grid_;
     gpu::Buffer triangle_table_;
@@ -89,42 +96,50 @@ HardwareRasterizer::HardwareRasterizer(const Grid& grid)
                                                    : device.info().why_not_hardware));
 }
 
-std::span<const uint32_t> HardwareRasterizer::mesh_code(bool forward, bool stereo) const {
-    const bool sums = grid_.device().info().mesh_subgroup_sums;
-    if (forward && stereo)
-        return grid_.pick(extract_forward_stereo_mesh, extract_forward_stereo_mesh_bricked);
-    if (forward) return grid_.pick(extract_forward_mesh, extract_forward_mesh_bricked);
-    if (sums && stereo)
-        return grid_.pick(extract_subgroups_stereo_mesh, extract_subgroups_stereo_mesh_bricked);
-    if (sums) return grid_.pick(extract_subgroups_mesh, extract_subgroups_mesh_bricked);
-    if (stereo) return grid_.pick(extract_stereo_mesh, extract_stereo_mesh_bricked);
-    return grid_.pick(extract_mesh, extract_mesh_bricked);
+Code HardwareRasterizer::mesh_code(bool forward, gpu::Eyes eyes) const {
+    const auto pick = [&](const std::array<Code, 3>& one, const std::array<Code, 3>& several) {
+        return grid_.pick(one[size_t(eyes)], several[size_t(eyes)]);
+    };
+    if (forward)
+        return pick(
+            {extract_forward_mesh, extract_forward_stereo_mesh, extract_forward_multiview_mesh},
+            {extract_forward_mesh_bricked, extract_forward_stereo_mesh_bricked,
+             extract_forward_multiview_mesh_bricked});
+    if (grid_.device().info().mesh_subgroup_sums)
+        return pick({extract_subgroups_mesh, extract_subgroups_stereo_mesh,
+                     extract_subgroups_multiview_mesh},
+                    {extract_subgroups_mesh_bricked, extract_subgroups_stereo_mesh_bricked,
+                     extract_subgroups_multiview_mesh_bricked});
+    return pick(
+        {extract_mesh, extract_stereo_mesh, extract_multiview_mesh},
+        {extract_mesh_bricked, extract_stereo_mesh_bricked, extract_multiview_mesh_bricked});
 }
 
 const gpu::Pipeline& HardwareRasterizer::pipeline(const Frame& frame) {
     const Colors colors = colors_of(frame);
-    const bool stereo = frame.eyes() > 1, clipped = !frame.clips.empty();
-    gpu::Pipeline& pipeline = pipelines_[size_t(colors) + 3 * stereo + 6 * clipped];
+    const bool clipped = !frame.clips.empty();
+    const gpu::Eyes eyes = grid_.device().eyes(frame.eyes());
+    gpu::Pipeline& pipeline = pipelines_[size_t(colors) + 3 * (frame.eyes() - 1) + 6 * clipped];
     if (pipeline) return pipeline;
 
-    using Code = std::span<const uint32_t>;
     const bool sums = grid_.device().info().mesh_subgroup_sums;
     const Code task = sums ? grid_.pick(extract_subgroups_task, extract_subgroups_task_bricked)
                            : grid_.pick(extract_task, extract_task_bricked);
-    const std::array<Code, 3> fragment{clip_frag, surface_number_frag, forward_frag};
-    const std::array<Code, 3> stereo_fragment{clip_stereo_frag, surface_number_stereo_frag,
-                                              forward_stereo_frag};
+    const std::array<std::array<Code, 3>, 3> fragments{
+        {{clip_frag, clip_stereo_frag, clip_multiview_frag},
+         {surface_number_frag, surface_number_stereo_frag, surface_number_multiview_frag},
+         {forward_frag, forward_stereo_frag, forward_multiview_frag}}};
     std::vector<gpu::Shader> shaders{
         {VK_SHADER_STAGE_TASK_BIT_EXT, task},
-        {VK_SHADER_STAGE_MESH_BIT_EXT, mesh_code(colors == Colors::shaded, stereo)}};
+        {VK_SHADER_STAGE_MESH_BIT_EXT, mesh_code(colors == Colors::shaded, eyes)}};
     if (colors != Colors::none || clipped)
-        shaders.push_back(
-            {VK_SHADER_STAGE_FRAGMENT_BIT, (stereo ? stereo_fragment : fragment)[size_t(colors)]});
+        shaders.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, fragments[size_t(colors)][size_t(eyes)]});
     const auto info =
         grid_.pipeline_info("extract and rasterize", {Kind::buffer, Kind::buffer, Kind::buffer},
                             sizeof(Push), {clipped});
-    pipeline = gpu::Pipeline::graphics(grid_.device(), info, shaders,
-                                       {color_formats(colors), VK_FORMAT_D32_SFLOAT});
+    pipeline = gpu::Pipeline::graphics(
+        grid_.device(), info, shaders,
+        {.colors = color_formats(colors), .depth = VK_FORMAT_D32_SFLOAT, .layers = frame.eyes()});
     return pipeline;
 }
 

@@ -9,6 +9,7 @@
 #include "gpu/device.h"
 #include "proxies_frag.h"
 #include "proxies_mesh.h"
+#include "proxies_multiview_mesh.h"
 #include "proxies_stereo_mesh.h"
 #include "proxies_task.h"
 #include "techniques/direct/occlusion.h"
@@ -49,13 +50,17 @@ RasterProxies::RasterProxies(const Grid& grid) {
         grid.pipeline_info("raster proxies", {Kind::buffer, Kind::buffer, Kind::buffer}, 0);
     const gpu::Shader task{VK_SHADER_STAGE_TASK_BIT_EXT, proxies_task};
     const gpu::Shader fragment{VK_SHADER_STAGE_FRAGMENT_BIT, proxies_frag};
-    const gpu::Attachments attachments{.depth = VK_FORMAT_D32_SFLOAT,
-                                       .writes_depth = false,
-                                       .representative = device.features().representative_test};
-    const std::array<std::span<const uint32_t>, 2> meshes{proxies_mesh, proxies_stereo_mesh};
-    for (size_t i = 0; i < draw_.size(); ++i)
-        draw_[i] = gpu::Pipeline::graphics(
-            device, info, {task, {VK_SHADER_STAGE_MESH_BIT_EXT, meshes[i]}, fragment}, attachments);
+    const std::array<std::span<const uint32_t>, 3> meshes{proxies_mesh, proxies_stereo_mesh,
+                                                          proxies_multiview_mesh};
+    for (const uint32_t eyes : {1u, 2u}) {
+        const gpu::Attachments attachments{.depth = VK_FORMAT_D32_SFLOAT,
+                                           .writes_depth = false,
+                                           .layers = eyes,
+                                           .representative = device.features().representative_test};
+        const gpu::Shader mesh{VK_SHADER_STAGE_MESH_BIT_EXT, meshes[size_t(device.eyes(eyes))]};
+        draw_[eyes - 1] =
+            gpu::Pipeline::graphics(device, info, {task, mesh, fragment}, attachments);
+    }
     tested_ = gpu::Buffer(device, uint64_t{4} * grid.info().groups.w, gpu::Buffer::Memory::device,
                           "visible blocks");
 }

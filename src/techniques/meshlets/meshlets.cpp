@@ -9,14 +9,17 @@
 #include <cstring>
 
 #include "clip_frag.h"
+#include "clip_multiview_frag.h"
 #include "clip_stereo_frag.h"
 #include "draw_meshlets_mesh.h"
+#include "draw_meshlets_multiview_mesh.h"
 #include "draw_meshlets_stereo_mesh.h"
 #include "draw_meshlets_task.h"
 #include "gpu/device.h"
 #include "passes/depth_pyramid.h"
 #include "passes/surface.h"
 #include "surface_number_frag.h"
+#include "surface_number_multiview_frag.h"
 #include "surface_number_stereo_frag.h"
 #include "techniques/meshlets/build.h"
 #include "techniques/technique.h"
@@ -98,26 +101,27 @@ Meshlets::Meshlets(const TechniqueContext& context)
       counters_(grid_.device(), sizeof(shared::Counters), Memory::device, "counters") {}
 
 const gpu::Pipeline& Meshlets::pipeline(const Frame& frame) {
-    const bool numbered = frame.isovalues.size() > 1, stereo = frame.eyes() > 1;
-    const bool clipped = !frame.clips.empty();
-    gpu::Pipeline& pipeline = pipelines_[numbered + 2 * stereo + 4 * clipped];
+    const bool numbered = frame.isovalues.size() > 1, clipped = !frame.clips.empty();
+    gpu::Pipeline& pipeline = pipelines_[numbered + 2 * (frame.eyes() - 1) + 4 * clipped];
     if (pipeline) return pipeline;
 
-    using Code = std::span<const uint32_t>;
-    std::vector<gpu::Shader> shaders{
-        {VK_SHADER_STAGE_TASK_BIT_EXT, draw_meshlets_task},
-        {VK_SHADER_STAGE_MESH_BIT_EXT,
-         stereo ? Code(draw_meshlets_stereo_mesh) : Code(draw_meshlets_mesh)}};
-    const Code number = stereo ? Code(surface_number_stereo_frag) : Code(surface_number_frag);
-    const Code clip = stereo ? Code(clip_stereo_frag) : Code(clip_frag);
+    using Codes = std::array<std::span<const uint32_t>, 3>;
+    const Codes mesh{draw_meshlets_mesh, draw_meshlets_stereo_mesh, draw_meshlets_multiview_mesh};
+    const Codes clip{clip_frag, clip_stereo_frag, clip_multiview_frag};
+    const Codes number{surface_number_frag, surface_number_stereo_frag,
+                       surface_number_multiview_frag};
+    const auto eyes = size_t(grid_.device().eyes(frame.eyes()));
+    std::vector<gpu::Shader> shaders{{VK_SHADER_STAGE_TASK_BIT_EXT, draw_meshlets_task},
+                                     {VK_SHADER_STAGE_MESH_BIT_EXT, mesh[eyes]}};
     if (numbered || clipped)
-        shaders.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, numbered ? number : clip});
+        shaders.push_back({VK_SHADER_STAGE_FRAGMENT_BIT, (numbered ? number : clip)[eyes]});
     std::vector<VkFormat> colors;
     if (numbered) colors = {VK_FORMAT_R32_UINT};
     const auto info =
         grid_.pipeline_info("draw meshlets", std::vector(6, Kind::buffer), sizeof(Push), {clipped});
-    pipeline =
-        gpu::Pipeline::graphics(grid_.device(), info, shaders, {colors, VK_FORMAT_D32_SFLOAT});
+    pipeline = gpu::Pipeline::graphics(
+        grid_.device(), info, shaders,
+        {.colors = colors, .depth = VK_FORMAT_D32_SFLOAT, .layers = frame.eyes()});
     return pipeline;
 }
 
