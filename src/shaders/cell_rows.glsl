@@ -8,13 +8,30 @@ uint corner_row(uint y, uint z) { return y + 9 * z; }
 // The cells that exist: blocks at the volume's end may be cut short.
 ivec3 cells_left(uvec3 first_cell) { return ivec3(grid.voxels.xyz) - 1 - ivec3(first_cell); }
 
-// The signs of the corner row that begins at a voxel, which may lie outside the volume.
+// The signs of a block's corner row that begins at a voxel. Voxels may lie outside the volume:
+// their signs are any. Three fetches are on their way at once: nine take more registers, of which a
+// GPU has so many for all workgroups.
 uint load_signs(Brick brick, ivec3 start, float iso) {
-    const int last = int(grid.voxels.x) - 1 - start.x;
     const ivec3 row = clamp_to_volume(start);
     uint bits = 0;
-    [[unroll]] for (int x = 0; x < 9; ++x)
-        bits |= (voxel(brick, row + ivec3(min(x, last), 0, 0)) >= iso ? 1u : 0u) << x;
+#ifndef BRICKED
+    if (VOXEL_FORMAT >= VOXELS_IN_BUFFER) {
+        const uint values = 32 / VOXEL_BITS, first = voxel_index(uvec3(row)) / values;
+        for (uint x = 0; x < 9; x += values) {
+            const uint word = voxels[min(first + x / values, voxels.length() - 1)];
+            for (uint i = 0; i < values; ++i)
+                bits |= (value_in(word, i) >= iso ? 1u : 0u) << x + i;
+        }
+        return bits & 0x1ffu;
+    }
+#endif
+    const int last = int(grid.voxels.x) - 1 - row.x;
+    [[dont_unroll]] for (int x = 0; x < 9; x += 3) {
+        float values[3];
+        [[unroll]] for (int i = 0; i < 3; ++i)
+            values[i] = voxel(brick, row + ivec3(min(x + i, last), 0, 0));
+        [[unroll]] for (int i = 0; i < 3; ++i) bits |= (values[i] >= iso ? 1u : 0u) << x + i;
+    }
     return bits;
 }
 

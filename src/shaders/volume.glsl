@@ -27,11 +27,16 @@ Brick brick_of(ivec3 cell) {
 // a texel.
 uint voxel_index(uvec3 p) { return p.x + grid.voxels.w * p.y + grid.brick_cells.w * p.z; }
 
+// One of the values in a word.
+float value_in(uint word, uint place) {
+    if (VOXEL_BITS == 8) return float(word >> 8 * place & 0xffu);
+    if (VOXEL_BITS == 16) return float(word >> 16 * place & 0xffffu);
+    return uintBitsToFloat(word);
+}
+
 float load_voxel(ivec3 position) {
-    const uint index = voxel_index(uvec3(position));
-    if (VOXEL_BITS == 8) return float(voxels[index >> 2] >> 8 * (index & 3u) & 0xffu);
-    if (VOXEL_BITS == 16) return float(voxels[index >> 1] >> 16 * (index & 1u) & 0xffffu);
-    return uintBitsToFloat(voxels[index]);
+    const uint index = voxel_index(uvec3(position)), values = 32 / VOXEL_BITS;
+    return value_in(voxels[index / values], index % values);
 }
 
 float fetch_texel(uint brick, ivec3 texel) {

@@ -24,7 +24,7 @@
 #include "techniques/direct/drawn.glsl"
 
 // CPU drivers save and restore all that a thread knows at each barrier: fewer threads are faster.
-layout(local_size_x = 128, local_size_x_id = 3) in;
+layout(local_size_x = 96, local_size_x_id = 3) in;
 const uint THREADS = gl_WorkGroupSize.x;
 
 // Marching cubes: of each case's five possible triangles, where the corners' vertices are
@@ -65,16 +65,14 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 
 // Shared memory is what limits this shader: a GPU may have no more than 48 KiB a multiprocessor for
 // all workgroups on it, and hides their waiting for voxels and for each other by having many. So
-// voxels are packed, and the lists are as long as most blocks need; blocks with more are worked off
-// in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197 crossed
-// edges and 160 triangles.
-const uint MAX_LISTED = 208;  // vertices, and occupied cells
-const uint MAX_TRIANGLES = 360;
+// voxels are not kept, and the lists are as long as most blocks need; blocks with more are worked
+// off in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197
+// crossed edges and 160 triangles.
+const uint MAX_LISTED = 197;  // vertices, and occupied cells
+const uint MAX_TRIANGLES = 330;
 
 #include "techniques/direct/block_lists.glsl"
 
-const uint VALUES_OF_WORD = 32 / VOXEL_BITS, ROW_WORDS = (9 * VOXEL_BITS + 31) / 32;
-shared uint values[ROWS * ROW_WORDS];
 shared uint row_totals;                // vertices | cells << 16
 shared uint triangle_total;
 // First the edges that vertices lie on, and the occupied cells. Then the vertices' pixels on the
@@ -95,54 +93,13 @@ shared ivec2 origin;  // a pixel that a corner of the block lies in
 #define RESERVE(total, count, first) first = atomicAdd(total, count);
 #endif
 
-// The value of a voxel in the word that holds it.
-float unpack(uint word, uint x) {
-    if (VOXEL_BITS == 32) return uintBitsToFloat(word);
-    const uint place = x % VALUES_OF_WORD;
-    return float(bitfieldExtract(word, int(VOXEL_BITS % 32 * place), int(VOXEL_BITS)));
-}
-
-// The words of the row of nine voxels from `start` on, of which `last` is the last one's number in
-// the volume: what follows is any value. All fetches are on their way before the first one's result
-// is waited for.
-void load_row(Brick brick, ivec3 start, int last, out uint words[ROW_WORDS]) {
-#ifndef BRICKED
-    if (VOXEL_FORMAT >= VOXELS_IN_BUFFER) {
-        const uint index = voxel_index(uvec3(start)) / VALUES_OF_WORD;
-        [[unroll]] for (uint i = 0; i < ROW_WORDS; ++i)
-            words[i] = voxels[min(index + i, voxels.length() - 1)];
-        return;
-    }
-#endif
-    float loaded[9];
-    [[unroll]] for (int x = 0; x < 9; ++x)
-        loaded[x] = voxel(brick, start + ivec3(min(x, last), 0, 0));
-    [[unroll]] for (uint x = 0; x < 9; ++x) {
-        const uint value = VOXEL_BITS == 32 ? floatBitsToUint(loaded[x]) : uint(loaded[x]);
-        const uint place = x % VALUES_OF_WORD, i = x / VALUES_OF_WORD;
-        words[i] = place == 0 ? value : words[i] | value << VOXEL_BITS % 32 * place;
-    }
-}
-
 uint first_row(Slab slab) { return first_corner_row(slab) + gl_LocalInvocationIndex; }
 
-// A row of nine corners a thread: their values and their signs.
+// A row of nine corners a thread.
 void load_rows(Slab slab, uvec3 first, float iso) {
     const Brick brick = brick_of(ivec3(first));
-    const int last = int(grid.voxels.x) - 1 - int(first.x);
-    for (uint row = first_row(slab); row < end_corner_row(slab); row += THREADS) {
-        uint words[ROW_WORDS], bits = 0;
-        load_row(brick, clamp_to_volume(ivec3(first + uvec3(0, row % 9, row / 9))), last, words);
-        [[unroll]] for (uint x = 0; x < 9; ++x)
-            bits |= (unpack(words[x / VALUES_OF_WORD], x) >= iso ? 1u : 0u) << x;
-        [[unroll]] for (uint i = 0; i < ROW_WORDS; ++i)
-            values[ROW_WORDS * row + i] = words[i];
-        signs[row] = bits;
-    }
-}
-
-float value_at(uint row, uint x) {
-    return unpack(values[ROW_WORDS * row + x / VALUES_OF_WORD], x);
+    for (uint row = first_row(slab); row < end_corner_row(slab); row += THREADS)
+        signs[row] = load_signs(brick, ivec3(first) + ivec3(0, row % 9, row / 9), iso);
 }
 
 // The edges of a row's vertices, up to the vertex `end`.
@@ -191,13 +148,16 @@ bool fits() {
            triangle_total <= MAX_TRIANGLES;
 }
 
-// Clip space: the one place where voxels meet the camera.
+// Clip space: the one place where voxels meet the camera. To fetch two voxels once more is no
+// slower than to keep all in shared memory, and leaves room there.
 vec4 vertex_on(uint eye, uint edge, uvec3 first, float iso) {
     const uvec3 corner = edge_corner(edge);
-    const uint axis = edge_axis(edge), row = edge >> 5;
-    const float lower = value_at(row, corner.x);
-    const float upper = value_at(row + (axis == 1 ? 1 : axis == 2 ? 9 : 0),
-                                 corner.x + (axis == 0 ? 1 : 0));
+    const uint axis = edge_axis(edge);
+    ivec3 step = ivec3(0);
+    step[axis] = 1;
+    const Brick brick = brick_of(ivec3(first));
+    const float lower = voxel(brick, ivec3(first + corner));
+    const float upper = voxel(brick, ivec3(first + corner) + step);
     const vec3 position = crossing(first + corner, axis, lower, upper, iso);
     precise const vec4 clip = frame.eyes[eye].clip_from_voxel * vec4(position, 1.0);
     return clip;
