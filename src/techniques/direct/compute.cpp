@@ -68,17 +68,18 @@ private:
     const gpu::Pipeline& pipeline(const Frame& frame, Size size) {
         const bool numbered = frame.isovalues.size() > 1, clipped = !frame.clips.empty();
         const bool large = size == Size::large;
-        gpu::Pipeline& pipeline = pipelines_[size_t(numbered) + 2 * clipped + 4 * large];
+        const uint32_t eyes = frame.eyes();
+        gpu::Pipeline& pipeline = pipelines_[numbered + 2 * clipped + 4 * large + 8 * (eyes - 1)];
         if (pipeline) return pipeline;
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
                                    Kind::image};
         const bool cpu = grid_.device().is_cpu();
         const uint32_t threads = cpu ? std::max(8u, grid_.device().info().subgroup_size) : 96;
-        pipeline =
-            gpu::Pipeline::compute(grid_.device(),
-                                   grid_.pipeline_info("rasterize", bindings, sizeof(Push),
-                                                       {clipped, !cpu, threads, large_parts()}),
-                                   code(numbered, large));
+        pipeline = gpu::Pipeline::compute(
+            grid_.device(),
+            grid_.pipeline_info("rasterize", bindings, sizeof(Push),
+                                {clipped, !cpu, threads, large_parts(), eyes}),
+            code(numbered, large));
         return pipeline;
     }
 
@@ -98,7 +99,7 @@ private:
     const Grid& grid_;
     gpu::Buffer triangle_table_;
     gpu::Pipeline clear_;
-    std::array<gpu::Pipeline, 8> pipelines_;  // made when first needed
+    std::array<gpu::Pipeline, 16> pipelines_;  // made when first needed
 };
 
 }  // namespace

@@ -37,6 +37,7 @@ layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 // Whether depth is the plane through the vertices' positions on the grid of 1/256 pixels, as GPUs
 // have it, or through those before rounding, as lavapipe has it.
 layout(constant_id = 2) const bool SNAPPED = false;
+layout(constant_id = 5) const uint EYES = 1;
 // Workgroups that share a block, a slab each.
 #ifdef LARGE
 layout(constant_id = 4) const uint PARTS = 1;
@@ -68,8 +69,8 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 // voxels are not kept, and the lists are as long as most blocks need; blocks with more are worked
 // off in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197
 // crossed edges and 160 triangles.
-const uint MAX_LISTED = 197;  // vertices, and occupied cells
-const uint MAX_TRIANGLES = 330;
+const uint MAX_LISTED = 204;  // vertices, and occupied cells
+const uint MAX_TRIANGLES = 360;
 
 #include "techniques/direct/block_lists.glsl"
 
@@ -256,7 +257,7 @@ void draw_block(uint part, uvec3 first, float iso) {
         list_triangles();
         barrier();
         const bool all = fits();
-        for (uint eye = 0; eye < frame.counts.x && all; ++eye) {
+        for (uint eye = 0; eye < EYES && all; ++eye) {
 #ifndef LARGE
             if (eye > 0) list_again(slab, eye, first);
 #endif
