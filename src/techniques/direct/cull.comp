@@ -18,11 +18,12 @@ layout(local_size_x = CULL_GROUPS * GROUP_BLOCKS) in;
 
 // Workgroups that share a large block; 0: large blocks have no list of their own.
 layout(constant_id = 1) const uint LARGE_PARTS = 0;
+layout(constant_id = 2) const uint EYES = 1;
 const uint ALL = 0, SEEN = 1, TESTED = 2;
 #ifdef HIZ
 const uint SELECT = 3;
 #else
-layout(constant_id = 2) const uint SELECT = ALL;
+layout(constant_id = 3) const uint SELECT = ALL;
 #endif
 
 layout(set = 1, binding = 1, std430) buffer Draws { Draw draws[]; };
@@ -69,7 +70,7 @@ bool is_selected(uvec3 block, bool seen, out bool large, out bool look) {
     vec3 low, high;
     corners_of(block, low, high);
     bool selected = false;
-    for (uint eye = 0; eye < frame.counts.x; ++eye) {
+    for (uint eye = 0; eye < EYES; ++eye) {
         Extent extent;
         const bool whole = project(eye, low, high, extent);
         // In any eye, also one that does not see it: the block is drawn for both.
@@ -146,7 +147,7 @@ void main() {
             const uint of = candidates[i] >> 5, at = candidates[i] & 31u;
             vec3 low, high;
             corners_of(group_origin(active_groups[first + of].x) + block_in_group(at), low, high);
-            for (uint eye = 0; eye < frame.counts.x; ++eye)
+            for (uint eye = 0; eye < EYES; ++eye)
                 if (in_frustum(eye, low, high) && is_in_sight(eye, low, high, thread % TEAM))
                     atomicOr(drawn_masks[of], 1u << at);
         }

@@ -59,7 +59,10 @@ bool has_moved(const std::optional<Camera>& from, const Camera& to, Motion most)
 }  // namespace
 
 Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t large_parts)
-    : grid_(grid), sizes_(large_parts != 0 ? 2 : 1), occlusion_(std::move(occlusion)) {
+    : grid_(grid),
+      large_parts_(large_parts),
+      sizes_(large_parts != 0 ? 2 : 1),
+      occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
     const uint64_t quartets = uint64_t{shared::QUARTETS} * groups;
@@ -71,31 +74,22 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     for (gpu::Buffer& visible : visible_)
         visible = gpu::Buffer(device, uint64_t{4} * groups, Memory::device, "visible blocks");
 
-    const auto make = [&](const char* name, std::vector<Kind> bindings, uint32_t push_bytes,
-                          std::vector<uint32_t> constants, std::span<const uint32_t> spirv) {
-        return gpu::Pipeline::compute(
-            device, grid.pipeline_info(name, std::move(bindings), push_bytes, std::move(constants)),
-            spirv);
-    };
-    find_active_ = make("find active", {Kind::buffer, Kind::buffer}, 8, {}, find_active_comp);
-    const std::vector lists(7, Kind::buffer);
-    for (uint32_t which = 0; which < select_.size(); ++which)
-        select_[which] = make("cull", lists, 8, {large_parts, which}, cull_comp);
-    if (occlusion_->kind() == Occlusion::hiz)
-        select_hiz_ = make("cull", lists, 8, {large_parts}, cull_hiz);
+    find_active_ = gpu::Pipeline::compute(
+        device, grid.pipeline_info("find active", {Kind::buffer, Kind::buffer}, 8),
+        find_active_comp);
     const uint32_t blocks = grid.info().blocks.w;
     const bool hardware = sizes_ == 1, soon = !hardware && !device.is_cpu();
     if (blocks < (soon ? WORTH_A_STEP_IF_SOON : WORTH_A_STEP)) return;
     dear_ = hardware || blocks >= MANY;
     rays_pay_ = !soon || blocks >= MANY;
-    if (occlusion_->kind() == Occlusion::hiz) {
+    if (occlusion_->kind() == Occlusion::hiz)
         drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
-        select_likely_ = make("cull", lists, 8, {large_parts}, cull_surfaces);
-    }
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     guess_visible_ =
-        make("guess visible", {Kind::buffer}, 4, {/* EXACT= */ 0, filtered, /* GUESS= */ 1},
-             grid.pick(guess_visible_comp, guess_visible_comp_bricked));
+        gpu::Pipeline::compute(device,
+                               grid.pipeline_info("guess visible", {Kind::buffer}, 4,
+                                                  {/* EXACT= */ 0, filtered, /* GUESS= */ 1}),
+                               grid.pick(guess_visible_comp, guess_visible_comp_bricked));
 }
 
 uint64_t Culling::gpu_bytes() const {
@@ -104,6 +98,19 @@ uint64_t Culling::gpu_bytes() const {
     for (const auto& list : active_groups_)
         bytes += list.bytes();
     return bytes;
+}
+
+const gpu::Pipeline& Culling::selection(Test test) {
+    gpu::Pipeline& pipeline = selections_[eyes_ - 1][size_t(test)];
+    if (pipeline) return pipeline;
+    const auto code = test == Test::surfaces ? std::span<const uint32_t>(cull_surfaces)
+                      : test == Test::hiz    ? std::span<const uint32_t>(cull_hiz)
+                                             : std::span<const uint32_t>(cull_comp);
+    pipeline = gpu::Pipeline::compute(grid_.device(),
+                                      grid_.pipeline_info("cull", std::vector(7, Kind::buffer), 8,
+                                                          {large_parts_, eyes_, uint32_t(test)}),
+                                      code);
+    return pipeline;
 }
 
 void Culling::find_active(Commands& commands, const std::vector<float>& isovalues) {
@@ -139,6 +146,7 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     commands.update(counters_, offsetof(shared::Counters, blocks_drawn), &ZERO, sizeof(ZERO));
     commands.fill(draws_, 0);
     target.visible_blocks = nullptr;
+    eyes_ = frame.eyes();
     if (!frame.culling) return commands.barrier();
     // What was marked last is seen now; the other set is cleared and marked next.
     seen_ = 1 - seen_;
@@ -150,7 +158,7 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     if (cut) commands.fill(visible_[seen_], 0);
     last_camera_ = frame.camera;
     // Marks of drawn blocks are for all surfaces: likely ones can be drawn of a single one only.
-    has_likely_ = select_likely_ && frame.isovalues.size() == 1 && (changed_ || fast);
+    has_likely_ = drawn_before_ && frame.isovalues.size() == 1 && (changed_ || fast);
     commands.barrier();
     if (guess_visible_ && (cut || (changed_ && rays_pay_))) guess_visible(commands, frame);
     changed_ = false;
@@ -170,12 +178,15 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
         uint32_t first_draw, draws_of_list;
     };
     const bool likely = which == Select::likely, unseen = which == Select::unseen;
+    const bool hiz = unseen && occlusion_->kind() == Occlusion::hiz;
     first_draw_ = (LISTS * surface + (likely ? 1 : unseen ? 2 : 0)) * sizes_ * draw_count_;
-    // Raster proxies have marked unseen blocks: cull.comp's TESTED.
+    // Raster proxies have marked unseen blocks.
     commands.bind(
-        likely                  ? select_likely_
-        : unseen && select_hiz_ ? select_hiz_
-                                : select_[std::min(size_t(which), select_.size() - 1)],
+        selection(which == Select::all ? Test::none
+                  : likely             ? Test::surfaces
+                  : hiz                ? Test::hiz
+                  : unseen             ? Test::tested
+                                       : Test::seen),
         {active_groups_[surface], draws_, drawn_blocks_, counters_,
          unseen ? drawn() : visible_[seen_], likely || unseen ? occlusion_->result() : drawn(),
          likely ? drawn_before_ : counters_});

@@ -56,17 +56,19 @@ public:
 private:
     void find_active(gpu::Commands& commands, uint32_t surface, float isovalue);
     void guess_visible(gpu::Commands& commands, const Frame& frame) const;
+    // What cull.comp goes by; the first three are its SELECT.
+    enum class Test : uint32_t { none, seen, tested, hiz, surfaces };
+    const gpu::Pipeline& selection(Test test);
     // The blocks drawn before select(unseen), of active groups.
     const gpu::Buffer& drawn() const { return has_likely_ ? drawn_before_ : visible_[seen_]; }
 
     const Grid& grid_;
-    uint32_t sizes_, draw_count_ = 0, first_draw_ = 0;
+    uint32_t large_parts_, sizes_, draw_count_ = 0, first_draw_ = 0;
+    uint32_t eyes_ = 1;  // of this frame
     std::unique_ptr<OcclusionTest> occlusion_;
     gpu::Pipeline find_active_, guess_visible_;
-    std::array<gpu::Pipeline, 3> select_;     // one for each SELECT of cull.comp
-    gpu::Pipeline select_hiz_;                // unseen blocks, by a depth pyramid
-    gpu::Pipeline select_likely_;             // the same, by one of surfaces
-    std::vector<gpu::Buffer> active_groups_;  // one for each surface
+    std::array<std::array<gpu::Pipeline, 5>, 2> selections_;  // of eyes, Test; when first needed
+    std::vector<gpu::Buffer> active_groups_;                  // one for each surface
     gpu::Buffer drawn_blocks_, draws_, counters_;
     std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
     uint32_t seen_ = 0;                   // which of the two is last frame's
