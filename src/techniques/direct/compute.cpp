@@ -74,7 +74,9 @@ private:
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
                                    Kind::image};
         const bool cpu = grid_.device().is_cpu();
-        const uint32_t threads = cpu ? std::max(8u, grid_.device().info().subgroup_size) : 96;
+        const uint32_t threads = cpu     ? std::max(8u, grid_.device().info().subgroup_size)
+                                 : large ? 128
+                                         : 96;
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
             grid_.pipeline_info("rasterize", bindings, sizeof(Push),
