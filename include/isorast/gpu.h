@@ -37,7 +37,7 @@ enum class Occlusion : uint8_t { automatic, raster, hiz };
 // What `automatic` becomes for direct on a device; see choose_rasterizer() in <isorast/renderer.h>.
 struct RasterizerChoice {
     Rasterizer rasterizer = Rasterizer::automatic;  // still automatic: neither works
-    // The median frame of a small scene, milliseconds; 0: not measured, as there was no choice.
+    // The fastest frame of a small scene, milliseconds; 0: not measured, as there was no choice.
     double hardware_ms = 0, compute_ms = 0;
     Occlusion occlusion = Occlusion::hiz;  // the faster one with the hardware rasterizer
     std::string problem;  // why the compute rasterizer is not to be trusted here; empty: it is
