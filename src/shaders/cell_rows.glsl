@@ -8,9 +8,14 @@ uint corner_row(uint y, uint z) { return y + 9 * z; }
 // The cells that exist: blocks at the volume's end may be cut short.
 ivec3 cells_left(uvec3 first_cell) { return ivec3(grid.voxels.xyz) - 1 - ivec3(first_cell); }
 
+// Fetches that are on their way at once: 3 or 9. More wait less, and take registers, of which a GPU
+// has so many for all workgroups.
+#ifndef SIGNS_AT_ONCE
+#define SIGNS_AT_ONCE 9
+#endif
+
 // The signs of a block's corner row that begins at a voxel. Voxels may lie outside the volume:
-// their signs are any. Three fetches are on their way at once: nine take more registers, of which a
-// GPU has so many for all workgroups.
+// their signs are any.
 uint load_signs(Brick brick, ivec3 start, float iso) {
     const ivec3 row = clamp_to_volume(start);
     uint bits = 0;
@@ -26,11 +31,12 @@ uint load_signs(Brick brick, ivec3 start, float iso) {
     }
 #endif
     const int last = int(grid.voxels.x) - 1 - row.x;
-    [[dont_unroll]] for (int x = 0; x < 9; x += 3) {
-        float values[3];
-        [[unroll]] for (int i = 0; i < 3; ++i)
+    [[dont_unroll]] for (int x = 0; x < 9; x += SIGNS_AT_ONCE) {
+        float values[SIGNS_AT_ONCE];
+        [[unroll]] for (int i = 0; i < SIGNS_AT_ONCE; ++i)
             values[i] = voxel(brick, row + ivec3(min(x + i, last), 0, 0));
-        [[unroll]] for (int i = 0; i < 3; ++i) bits |= (values[i] >= iso ? 1u : 0u) << x + i;
+        [[unroll]] for (int i = 0; i < SIGNS_AT_ONCE; ++i)
+            bits |= (values[i] >= iso ? 1u : 0u) << x + i;
     }
     return bits;
 }

@@ -72,6 +72,7 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 const uint MAX_LISTED = 204;  // vertices, and occupied cells
 const uint MAX_TRIANGLES = 360;
 
+#define SIGNS_AT_ONCE 3
 #include "techniques/direct/block_lists.glsl"
 
 shared uint row_totals;                // vertices | cells << 16
