@@ -23,7 +23,7 @@ struct HostDevice {
     bool nonuniform_textures =
         false;  // shaderSampledImageArrayNonUniformIndexing: volumes of several bricks
     bool mesh_shaders = false;       // VK_EXT_mesh_shader with taskShader and meshShader
-    bool mesh_multiview = false;     // multiview and multiviewMeshShader
+    bool mesh_multiview = false;     // multiview and multiviewMeshShader, of two views
     bool dynamic_rendering = false;  // Vulkan 1.3 dynamicRendering
     bool storage_without_format =
         false;                     // shaderStorageImageWriteWithoutFormat and ...ExtendedFormats

@@ -178,15 +178,12 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
         uint32_t first_draw, draws_of_list;
     };
     const bool likely = which == Select::likely, unseen = which == Select::unseen;
-    const bool hiz = unseen && occlusion_->kind() == Occlusion::hiz;
+    const bool hiz = occlusion_->kind() == Occlusion::hiz;
+    // For each Select; raster proxies have marked unseen blocks before.
+    const std::array tests{Test::none, Test::seen, Test::surfaces, hiz ? Test::hiz : Test::tested};
     first_draw_ = (LISTS * surface + (likely ? 1 : unseen ? 2 : 0)) * sizes_ * draw_count_;
-    // Raster proxies have marked unseen blocks.
     commands.bind(
-        selection(which == Select::all ? Test::none
-                  : likely             ? Test::surfaces
-                  : hiz                ? Test::hiz
-                  : unseen             ? Test::tested
-                                       : Test::seen),
+        selection(tests[size_t(which)]),
         {active_groups_[surface], draws_, drawn_blocks_, counters_,
          unseen ? drawn() : visible_[seen_], likely || unseen ? occlusion_->result() : drawn(),
          likely ? drawn_before_ : counters_});
