@@ -31,25 +31,18 @@ CellLine cell_line(float corners[8], vec3 from, vec3 to, float iso) {
     return line;
 }
 
-// The crossing in [a, b], where the cubic is monotonic and changes sign: bisection in its secant
-// form (Illinois), which keeps the bracket.
+// The crossing in [a, b], where the cubic is monotonic and changes sign: Newton's method from the
+// secant's point on, within the bracket, which is halved where that leaves it.
 float solve_between(vec4 cubic, float a, float b) {
-    float fa = cubic_at(cubic, a), fb = cubic_at(cubic, b);
-    float s = a;
-    for (int i = 0; i < 10; ++i) {
+    const float fa = cubic_at(cubic, a), fb = cubic_at(cubic, b);
+    float s = fa == fb ? 0.5 * (a + b) : clamp((a * fb - b * fa) / (fb - fa), a, b);
+    for (int i = 0; i < 8; ++i) {
+        const float f = cubic_at(cubic, s), next = s - f / slope_at(cubic, s);
+        if ((f >= 0.0) == (fb >= 0.0)) b = s;
+        else a = s;
         const float last = s;
-        s = fa == fb ? 0.5 * (a + b) : clamp((a * fb - b * fa) / (fb - fa), a, b);
-        const float f = cubic_at(cubic, s);
-        if (s == last || f == 0.0) break;
-        if ((f >= 0.0) == (fb >= 0.0)) {
-            b = s;
-            fb = f;
-            fa *= 0.5;
-        } else {
-            a = s;
-            fa = f;
-            fb *= 0.5;
-        }
+        s = next >= a && next <= b ? next : 0.5 * (a + b);
+        if (abs(s - last) < 1e-6) break;
     }
     return s;
 }
