@@ -252,9 +252,9 @@ struct Render : Command {
         frame.camera = view.camera(
             volume, steps.size() > 1 ? VoxelPoints{} : renderer.surface_hull(frame.isovalues));
 
-        RenderReport report{.outputs = outputs,
+        RenderReport report{.outputs = {},
                             .time_steps = steps,
-                            .size = frame.size,
+                            .size = {},
                             .isovalues = frame.isovalues,
                             .technique = renderer.technique(),
                             .rasterizer = std::string(name_of(renderer.rasterizer())),
@@ -282,7 +282,7 @@ struct Render : Command {
                 const Image image = renderer.render(frame);
                 if (round > 0 || rounds == 1) all_stats.push_back(renderer.stats());
                 if (round + 1 == rounds) {
-                    write(image, i, source);
+                    write(image, i, source, report);
                     if (!reference.empty()) compare_with_reference(image, i, report);
                 }
                 progress.done();
@@ -325,7 +325,9 @@ struct Render : Command {
         }
     }
 
-    void write(const Image& image, size_t index, const std::string& source) const {
+    // The report says what was written, and how large it is.
+    void write(const Image& image, size_t index, const std::string& source,
+               RenderReport& report) const {
         std::string comment = fmt::format("isovalue {:.9g}", fmt::join(frame.isovalues, ", "));
         if (steps.size() > 1) comment += fmt::format(", time step {}", steps[index]);
         const std::vector<std::pair<std::string, std::string>> text = {
@@ -333,7 +335,9 @@ struct Render : Command {
             {"Source", std::filesystem::path(source).filename().string()},
             {"Comment", comment}};
         const std::string& path = outputs[index];
-        if (view.stereo.mode == StereoMode::layers) return write_layers(image, path, text);
+        if (view.stereo.mode == StereoMode::layers) return write_layers(image, path, text, report);
+        report.outputs.push_back(path);
+        report.size = image.size;
         if (path != "-") return write_png(path, image, text);
         const std::vector<uint8_t> bytes = encode_png(image, text);
         if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
@@ -344,14 +348,17 @@ struct Render : Command {
 
     // picture.png: picture.left.png and picture.right.png.
     void write_layers(const Image& image, const std::string& path,
-                      const std::vector<std::pair<std::string, std::string>>& text) const {
+                      const std::vector<std::pair<std::string, std::string>>& text,
+                      RenderReport& report) const {
         const size_t half = image.rgba.size() / 2;
         for (const auto& [name, begin] :
              {std::pair{".left.png", size_t{0}}, {".right.png", half}}) {
             const auto first = image.rgba.begin() + ptrdiff_t(begin);
             const Image eye{.size = {image.size.width, image.size.height / 2},
                             .rgba = {first, first + ptrdiff_t(half)}};
-            write_png(std::filesystem::path(path).replace_extension(name).string(), eye, text);
+            report.outputs.push_back(std::filesystem::path(path).replace_extension(name).string());
+            report.size = eye.size;
+            write_png(report.outputs.back(), eye, text);
         }
     }
 

@@ -106,9 +106,9 @@ Json json_of(const RenderReport& report) {
               {"volume_bytes", stats.volume_bytes},
               {"extra_bytes", stats.extra_bytes},
               {"target_bytes", stats.target_bytes}};
+    if (report.outputs.size() > 1) json["outputs"] = report.outputs;
     if (report.time_steps.size() > 1)
-        json.update(Json{{"outputs", report.outputs},
-                         {"time_steps", report.time_steps},
+        json.update(Json{{"time_steps", report.time_steps},
                          {"resident_steps", stats.resident_steps},
                          {"wait_ms", stats.wait_ms},
                          {"longest_wait_ms", report.longest_wait_ms}});

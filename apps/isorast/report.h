@@ -6,7 +6,7 @@
 namespace isorast::cli {
 
 struct RenderReport {
-    std::vector<std::string> outputs;  // of one picture, or of one for each time step
+    std::vector<std::string> outputs;  // pictures written: one, or more for time steps and layers
     std::vector<uint32_t> time_steps;
     Size size;
     std::vector<double> isovalues;

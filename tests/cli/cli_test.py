@@ -291,9 +291,11 @@ class Render(CommandLine):
         self.assertEqual(len(pictures), len(views))
 
     def test_stereo(self):
-        self.render("torus:24", "-o", "both.png", "--stereo", "side-by-side")
+        out, _ = self.render("torus:24", "-o", "both.png", "--stereo", "side-by-side")
+        self.assertIn("both.png  192x64  ", out)
         self.assertEqual(size_of(self.read("both.png")), (192, 64))
-        self.render("torus:24", "-o", "eyes.png", "--stereo", "layers", "--eye-separation", "0.3", "--convergence", "4")
+        out, _ = self.render("torus:24", "-o", "eyes.png", "--stereo", "layers", "--eye-separation", "0.3", "--convergence", "4")
+        self.assertIn("2 pictures, eyes.left.png to eyes.right.png  96x64  ", out)
         self.assertNotEqual(self.read("eyes.left.png"), self.read("eyes.right.png"))
         self.render("torus:24", "-o", "glasses.png", "--stereo", "anaglyph")
         self.assertEqual(size_of(self.read("glasses.png")), (96, 64))
