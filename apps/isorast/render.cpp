@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "frames.h"
+#include "pictures.h"
 #include "report.h"
 #include "view.h"
 
@@ -19,25 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// The file's name without its extensions, in the current folder; a formula's with '-' for ':'.
-std::string default_output(const std::string& input, bool several) {
-    std::string name = input;
-    if (is_procedural(input)) {
-        std::ranges::replace_if(name, [](char c) { return c == ':' || c == '/'; }, '-');
-    } else {
-        std::filesystem::path path = std::filesystem::absolute(input).lexically_normal();
-        path = path.has_filename() ? path.filename() : path.parent_path().filename();
-        if (path.extension() == ".gz") path = path.stem();
-        name = path.stem().string();
-    }
-    return name + (several ? "_{time:4}.png" : ".png");
-}
-
-// a/b.png -> a/b.difference.png
-std::string difference_path(const std::string& output) {
-    return std::filesystem::path(output).replace_extension(".difference.png").string();
 }
 
 std::vector<std::string> with_automatic(std::vector<std::string> names) {
@@ -330,36 +312,13 @@ struct Render : Command {
                RenderReport& report) const {
         std::string comment = fmt::format("isovalue {:.9g}", fmt::join(frame.isovalues, ", "));
         if (steps.size() > 1) comment += fmt::format(", time step {}", steps[index]);
-        const std::vector<std::pair<std::string, std::string>> text = {
-            {"Software", "isorast"},
-            {"Source", std::filesystem::path(source).filename().string()},
-            {"Comment", comment}};
-        const std::string& path = outputs[index];
-        if (view.stereo.mode == StereoMode::layers) return write_layers(image, path, text, report);
-        report.outputs.push_back(path);
-        report.size = image.size;
-        if (path != "-") return write_png(path, image, text);
-        const std::vector<uint8_t> bytes = encode_png(image, text);
-        if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
-            std::fflush(stdout)) {
-            throw Error("standard output: the picture cannot be written");
-        }
-    }
-
-    // picture.png: picture.left.png and picture.right.png.
-    void write_layers(const Image& image, const std::string& path,
-                      const std::vector<std::pair<std::string, std::string>>& text,
-                      RenderReport& report) const {
-        const size_t half = image.rgba.size() / 2;
-        for (const auto& [name, begin] :
-             {std::pair{".left.png", size_t{0}}, {".right.png", half}}) {
-            const auto first = image.rgba.begin() + ptrdiff_t(begin);
-            const Image eye{.size = {image.size.width, image.size.height / 2},
-                            .rgba = {first, first + ptrdiff_t(half)}};
-            report.outputs.push_back(std::filesystem::path(path).replace_extension(name).string());
-            report.size = eye.size;
-            write_png(report.outputs.back(), eye, text);
-        }
+        const Written written =
+            write_picture(image, outputs[index], view.stereo.mode == StereoMode::layers,
+                          {{"Software", "isorast"},
+                           {"Source", std::filesystem::path(source).filename().string()},
+                           {"Comment", comment}});
+        report.outputs.insert(report.outputs.end(), written.files.begin(), written.files.end());
+        report.size = written.size;
     }
 
     // The report keeps the worst difference.

@@ -30,10 +30,8 @@ shared uint vertex_counts[CORNER_ROWS];
 void write_vertex(uint index, uvec3 first, uint edge, Brick brick) {
     const uint axis = edge_axis(edge);
     const ivec3 corner = ivec3(first + edge_corner(edge));
-    ivec3 step = ivec3(0);
-    step[axis] = 1;
-    const vec3 p = crossing(uvec3(corner), axis, voxel(brick, corner), voxel(brick, corner + step),
-                            iso);
+    const vec2 ends = edge_values(brick, corner, axis);
+    const vec3 p = crossing(uvec3(corner), axis, ends.x, ends.y, iso);
     for (uint i = 0; i < 3; ++i) positions[3 * index + i] = p[i];
     if (!GRADIENTS) return;
     // The edge, seen from the lower corner if the vertex lies there, else from the upper one.

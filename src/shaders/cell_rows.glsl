@@ -68,6 +68,13 @@ vec3 crossing(uvec3 corner, uint axis, float lower, float upper, float iso) {
     return position;
 }
 
+// The values at an edge's lower and upper corner.
+vec2 edge_values(Brick brick, ivec3 corner, uint axis) {
+    ivec3 step = ivec3(0);
+    step[axis] = 1;
+    return vec2(voxel(brick, corner), voxel(brick, corner + step));
+}
+
 // The edge `number` (marching_cubes.h) of cell (x, y, z).
 uint edge_of_cell(uint number, uint x, uint y, uint z) {
     const uint axis = number >> 2, low = number & 1u, high = number >> 1 & 1u;

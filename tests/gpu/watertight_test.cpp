@@ -51,9 +51,9 @@ public:
         for (size_t i = 0; i < code.size(); ++i)
             pipelines_[i] = gpu::Pipeline::compute(
                 device,
-                grid_.pipeline_info(
-                    "counting", bindings, 12,
-                    {/* CLIPPED= */ 0, SNAPPED, sums ? 128u : 8u, large_parts(sums)}),
+                grid_.pipeline_info("counting", bindings, 12,
+                                    {/* CLIPPED= */ 0, SNAPPED, threads(sums, Culling::Size(i)),
+                                     large_parts(sums)}),
                 code[i]);
         gpu::run_once(device,
                       [&](gpu::Commands& commands) { commands.discard_to_general(counts_); });
@@ -84,6 +84,9 @@ public:
 
 private:
     static uint32_t large_parts(bool sums) { return sums ? 8 : 1; }
+    static uint32_t threads(bool sums, Culling::Size size) {
+        return !sums ? 8 : size == Culling::Size::large ? 128 : 96;
+    }
 
     Grid grid_;
     Culling culling_;

@@ -155,12 +155,8 @@ bool fits() {
 vec4 vertex_on(uint eye, uint edge, uvec3 first, float iso) {
     const uvec3 corner = edge_corner(edge);
     const uint axis = edge_axis(edge);
-    ivec3 step = ivec3(0);
-    step[axis] = 1;
-    const Brick brick = brick_of(ivec3(first));
-    const float lower = voxel(brick, ivec3(first + corner));
-    const float upper = voxel(brick, ivec3(first + corner) + step);
-    const vec3 position = crossing(first + corner, axis, lower, upper, iso);
+    const vec2 ends = edge_values(brick_of(ivec3(first)), ivec3(first + corner), axis);
+    const vec3 position = crossing(first + corner, axis, ends.x, ends.y, iso);
     precise const vec4 clip = frame.eyes[eye].clip_from_voxel * vec4(position, 1.0);
     return clip;
 }
