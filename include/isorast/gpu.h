@@ -39,7 +39,8 @@ struct RasterizerChoice {
     Rasterizer rasterizer = Rasterizer::automatic;  // still automatic: neither works
     // The fastest frame of a small scene, milliseconds; 0: not measured, as there was no choice.
     double hardware_ms = 0, compute_ms = 0;
-    Occlusion occlusion = Occlusion::hiz;  // the faster one with the hardware rasterizer
+    // With the hardware rasterizer: HiZ, unless proxies are faster by a tenth.
+    Occlusion occlusion = Occlusion::hiz;
     std::string problem;  // why the compute rasterizer is not to be trusted here; empty: it is
 };
 
