@@ -14,14 +14,27 @@ ivec3 cells_left(uvec3 first_cell) { return ivec3(grid.voxels.xyz) - 1 - ivec3(f
 #define SIGNS_AT_ONCE 9
 #endif
 
+// The signs of a row of texels, up to the last one.
+uint signs_of_texels(uint brick, ivec3 first, int last, bool whole, float threshold) {
+    uint bits = 0;
+    [[dont_unroll]] for (int x = 0; x < 9; x += SIGNS_AT_ONCE) {
+        float texels[SIGNS_AT_ONCE];
+        [[unroll]] for (int i = 0; i < SIGNS_AT_ONCE; ++i)
+            texels[i] = fetch_texel(brick, first + ivec3(whole ? x + i : min(x + i, last), 0, 0));
+        [[unroll]] for (int i = 0; i < SIGNS_AT_ONCE; ++i)
+            bits |= (texels[i] >= threshold ? 1u : 0u) << x + i;
+    }
+    return bits;
+}
+
 // The signs of a block's corner row that begins at a voxel. Voxels may lie outside the volume:
 // their signs are any.
 uint load_signs(Brick brick, ivec3 start, float iso) {
-    const ivec3 row = clamp_to_volume(start);
-    uint bits = 0;
 #ifndef BRICKED
     if (VOXEL_FORMAT >= VOXELS_IN_BUFFER) {
-        const uint values = 32 / VOXEL_BITS, first = voxel_index(uvec3(row)) / values;
+        const uint values = 32 / VOXEL_BITS;
+        const uint first = voxel_index(uvec3(clamp_to_volume(start))) / values;
+        uint bits = 0;
         for (uint x = 0; x < 9; x += values) {
             const uint word = voxels[min(first + x / values, voxels.length() - 1)];
             for (uint i = 0; i < values; ++i)
@@ -30,15 +43,12 @@ uint load_signs(Brick brick, ivec3 start, float iso) {
         return bits & 0x1ffu;
     }
 #endif
-    const int last = int(grid.voxels.x) - 1 - row.x;
-    [[dont_unroll]] for (int x = 0; x < 9; x += SIGNS_AT_ONCE) {
-        float values[SIGNS_AT_ONCE];
-        [[unroll]] for (int i = 0; i < SIGNS_AT_ONCE; ++i)
-            values[i] = voxel(brick, row + ivec3(min(x + i, last), 0, 0));
-        [[unroll]] for (int i = 0; i < SIGNS_AT_ONCE; ++i)
-            bits |= (values[i] >= iso ? 1u : 0u) << x + i;
-    }
-    return bits;
+    const float threshold = texel_threshold(iso);
+    if (all(lessThan(start + ivec3(8, 0, 0), ivec3(grid.voxels.xyz))))
+        return signs_of_texels(brick.index, start - brick.origin, 8, true, threshold);
+    const ivec3 row = clamp_to_volume(start);
+    return signs_of_texels(brick.index, row - brick.origin, int(grid.voxels.x) - 1 - row.x, false,
+                           threshold);
 }
 
 // Edges that the surface crosses whose lower corner is in this corner row: bits 0..7 along x, 8..16

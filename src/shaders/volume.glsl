@@ -47,6 +47,13 @@ float fetch_texel(uint brick, ivec3 texel) {
 #endif
 }
 
+// Whether a voxel's value is at least `iso`, as a comparison of its texel: between two steps.
+float texel_threshold(float iso) {
+    if (VOXEL_BITS == 8) return (ceil(iso) - 0.5) / 255.0;
+    if (VOXEL_BITS == 16) return (ceil(iso) - 0.5) / 65535.0;
+    return iso;
+}
+
 float filter_texels(uint brick, vec3 texel) {
 #ifdef BRICKED
     const vec3 size = vec3(textureSize(bricks[nonuniformEXT(brick)], 0));
@@ -173,13 +180,14 @@ float sample_on_grid(Brick brick, vec3 p) {
 vec3 field_gradient_filtered(vec3 p) {
     const Brick brick = brick_of(cell_of(p));
     const vec3 last = vec3(grid.voxels.xyz) - 1.0;
-    const vec3 above = min(p + 1.0, last), below = max(p - 1.0, 0.0);
+    const vec3 at = round(p * 256.0) / 256.0;
+    const vec3 above = min(at + 1.0, last), below = max(at - 1.0, 0.0);
     vec3 gradient;
     for (int axis = 0; axis < 3; ++axis) {
-        vec3 low = p, high = p;
+        vec3 low = at, high = at;
         low[axis] = below[axis];
         high[axis] = above[axis];
-        gradient[axis] = sample_on_grid(brick, high) - sample_on_grid(brick, low);
+        gradient[axis] = sample_filtered(brick, high) - sample_filtered(brick, low);
     }
     return gradient / max(above - below, 1e-6);
 }

@@ -4,14 +4,13 @@
 
 const uint ROWS = 81, CELL_ROWS = 64;  // of corners, of cells
 
-shared uint signs[ROWS];
+shared uint signs[ROWS + 10];  // what lies beyond the last row is read, but does not count
 shared uvec2 rows[ROWS];  // crossed edges of a corner row, in this slab, and the first one's number
-shared uint triangles[MAX_TRIANGLES];  // cell (x + 8 y + 64 z) | place in triangle_table << 9
+shared uint triangles[MAX_TRIANGLES];  // cell | place in triangle_table << 12
 
 // The corner rows of a cell row, which begins at this one.
 CellRow cell_row(uint row) {
-    return CellRow(signs[row], signs[min(row + 1, ROWS - 1)], signs[min(row + 9, ROWS - 1)],
-                   signs[min(row + 10, ROWS - 1)]);
+    return CellRow(signs[row], signs[row + 1], signs[row + 9], signs[row + 10]);
 }
 
 // Consecutive cell rows, y + 8 z.
@@ -19,8 +18,15 @@ struct Slab {
     uint first, count;
 };
 
+// Whether the slab is its block, and all of that in the volume. Most are, and then there is less to
+// ask: the compute rasterizer's time goes by its instructions.
+bool is_whole(Slab slab, ivec3 left) {
+    return slab.count == CELL_ROWS && all(greaterThanEqual(left, ivec3(BLOCK)));
+}
+
 // Whether a cell row is in the slab, and in the volume.
 bool in_slab(Slab slab, uint y, uint z, ivec3 left) {
+    if (is_whole(slab, left)) return max(y, z) < 8;
     return y < 8 && z < 8 && int(y) < left.y && int(z) < left.z &&
            y + 8 * z - slab.first < slab.count;
 }
@@ -31,40 +37,37 @@ uint end_corner_row(Slab slab) { return 9 * ((slab.first + slab.count + 7) / 8 +
 
 // Crossed edges of a corner row that cells of the slab have.
 uint crossed_edges(CellRow row, uint y, uint z, Slab slab, ivec3 left, uint cells_x) {
+    const uint edges = edge_bits(row.a, row.b, row.c);
+    if (is_whole(slab, left))
+        return edges & (EDGES_X | (y < 8 ? EDGES_Y : 0) | (z < 8 ? EDGES_Z : 0));
     // Cell rows around the corner row; y - 1 and z - 1 wrap to rows that are not there.
     const bool here = in_slab(slab, y, z, left), below = in_slab(slab, y - 1, z, left);
     const bool under = in_slab(slab, y, z - 1, left), both = in_slab(slab, y - 1, z - 1, left);
     const uint corners_x = cells_x << 1 | cells_x;
-    return edge_bits(row.a, row.b, row.c) & ((here || below || under || both ? cells_x : 0) |
-                                             (here || under ? corners_x << 8 : 0) |
-                                             (here || below ? corners_x << 17 : 0));
+    return edges & ((here || below || under || both ? cells_x : 0) |
+                    (here || under ? corners_x << 8 : 0) | (here || below ? corners_x << 17 : 0));
 }
 
-// A cell's first place in triangle_table.
+// A cell: its corner row << 5 | x. Its first place in triangle_table.
 uint table_entry(CellRow row, uint x) { return 5 * cell_case(row, x); }
 uint triangle_count(uint entry) { return triangle_table[entry] >> 29; }
 
 void list_triangles_of(uint cell, uint entry, uint count, uint first) {
     [[unroll]] for (uint number = 0; number < 5; ++number)
-        if (number < count) triangles[first + number] = cell | entry + number << 9;
+        if (number < count) triangles[first + number] = cell | entry + number << 12;
 }
 
-// A listed triangle: the corner row and the place in it from which its corners are counted, and
-// where they are.
+// A listed triangle: its cell, and where from there its corners are.
 struct Listed {
-    uint row, x, corners;
+    uint cell, corners;
 };
 Listed listed(uint i) {
-    const uint cell = triangles[i] & 511u;
-    return Listed(corner_row(cell >> 3 & 7u, cell >> 6), cell & 7u,
-                  triangle_table[triangles[i] >> 9]);
+    return Listed(triangles[i] & 0xfffu, triangle_table[triangles[i] >> 12]);
 }
 
-// The edge that a triangle's corner lies on: nine bits a corner, four for the row and five for the
-// edge's bit there.
+// The edge that a triangle's corner lies on: nine bits a corner, counted from the cell.
 uint corner_edge(Listed triangle, uint corner) {
-    const uint where = triangle.corners >> 9 * corner;
-    return triangle.row + (where & 15u) << 5 | triangle.x + (where >> 4 & 31u);
+    return triangle.cell + (triangle.corners >> 9 * corner & 0x1ffu);
 }
 
 // The number of that vertex in the list.

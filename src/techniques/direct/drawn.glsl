@@ -10,14 +10,14 @@ layout(push_constant) uniform Push {
     uint first_draw;
 };
 
-bool my_block(uint n, out uvec3 block) {
+bool my_quartet(out uint entry) {
     const uint i = draw * DRAW_QUARTETS + gl_WorkGroupID.x + DRAW_ROW * gl_WorkGroupID.y;
     // Both on their way before either is waited for.
     const uint last = drawn_quartets.length() - 1, count = draws[first_draw].quartets;
 #ifdef LARGE
-    const uint entry = drawn_quartets[last - min(i, last)];
+    entry = drawn_quartets[last - min(i, last)];
 #else
-    const uint entry = drawn_quartets[min(i, last)];
+    entry = drawn_quartets[min(i, last)];
 #endif
-    return i < count && drawn_block(entry, n, block);
+    return i < count;
 }

@@ -69,7 +69,7 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 // voxels are not kept, and the lists are as long as most blocks need; blocks with more are worked
 // off in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197
 // crossed edges and 160 triangles.
-const uint MAX_LISTED = 204;  // vertices, and occupied cells
+const uint MAX_LISTED = 200;  // vertices, and occupied cells
 const uint MAX_TRIANGLES = 360;
 
 #define SIGNS_AT_ONCE 3
@@ -85,14 +85,34 @@ shared ivec2 origin;  // a pixel that a corner of the block lies in
 
 // Takes `count` places in a list whose length is the shared `total`; `first` becomes the first one.
 // One atomic operation a subgroup where the device can add across it: threads wait for each other
-// at the same address.
+// at the same address. Small counts are added bit by bit, by ballots: those are faster than the
+// device's own sums.
 #ifdef SUBGROUPS
-#define RESERVE(total, count, first)                       \
-    first = subgroupAdd(count);                            \
-    if (subgroupElect()) first = atomicAdd(total, first);  \
-    first = subgroupBroadcastFirst(first) + subgroupExclusiveAdd(count);
+#define RESERVE(total, count, first)                         \
+    {                                                        \
+        const uint up_to = subgroupInclusiveAdd(count);      \
+        uint sum = subgroupMax(up_to);                       \
+        if (subgroupElect()) sum = atomicAdd(total, sum);    \
+        first = subgroupBroadcastFirst(sum) + up_to - count; \
+    }
+
+// One bit of the counts: what the threads before this one have in it; to `sum`, what all have.
+uint add_bit(uint count, uint bit, inout uint sum) {
+    const uvec4 ballot = subgroupBallot((count >> bit & 1u) != 0);
+    sum += subgroupBallotBitCount(ballot) << bit;
+    return subgroupBallotExclusiveBitCount(ballot) << bit;
+}
+#define RESERVE_FEW(total, count, first)                                                        \
+    {                                                                                           \
+        uint sum = 0;                                                                           \
+        const uint before =                                                                     \
+            add_bit(count, 0, sum) + add_bit(count, 1, sum) + add_bit(count, 2, sum);           \
+        if (subgroupElect()) sum = atomicAdd(total, sum);                                       \
+        first = subgroupBroadcastFirst(sum) + before;                                           \
+    }
 #else
 #define RESERVE(total, count, first) first = atomicAdd(total, count);
+#define RESERVE_FEW RESERVE
 #endif
 
 uint first_row(Slab slab) { return first_corner_row(slab) + gl_LocalInvocationIndex; }
@@ -124,31 +144,29 @@ void list_rows(Slab slab, ivec3 left) {
         rows[row] = uvec2(crossed, first & 0xffffu);
         const uint end = first + counts;
         uint cell = end >> 16;
-        if (max(end & 0xffffu, cell) > MAX_LISTED) continue;  // too many, see fits()
+        if (max(end & 0xffffu, cell) > MAX_LISTED) continue;
         list_row(row, crossed, end & 0xffffu);
         for (; cells != 0; cells ^= 1u << findMSB(cells))
-            vertex_depths[--cell] = z << 6 | y << 3 | findMSB(cells);
+            vertex_depths[--cell] = row << 5 | findMSB(cells);
     }
 }
 
+bool rows_fit() { return max(row_totals & 0xffffu, row_totals >> 16) <= MAX_LISTED; }
+
 void list_triangles() {
-    const uint cell_total = min(row_totals >> 16, MAX_LISTED);
+    const uint cell_total = rows_fit() ? row_totals >> 16 : 0;
     for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
-        const uint cell = vertex_depths[i] & 511u;
-        const uint entry =
-            table_entry(cell_row(corner_row(cell >> 3 & 7u, cell >> 6)), cell & 7u);
+        const uint cell = vertex_depths[i];
+        const uint entry = table_entry(cell_row(cell >> 5), cell & 31u);
         const uint count = triangle_count(entry);
         uint first;
-        RESERVE(triangle_total, count, first)
+        RESERVE_FEW(triangle_total, count, first)
         if (first + count <= MAX_TRIANGLES) list_triangles_of(cell, entry, count, first);
     }
 }
 
-// Whether the lists hold all. If rows do not fit, some cells are not listed, nor what they hold.
-bool fits() {
-    return max(row_totals & 0xffffu, row_totals >> 16) <= MAX_LISTED &&
-           triangle_total <= MAX_TRIANGLES;
-}
+// Whether the lists hold all.
+bool fits() { return rows_fit() && triangle_total <= MAX_TRIANGLES; }
 
 // Clip space: the one place where voxels meet the camera. To fetch two voxels once more is no
 // slower than to keep all in shared memory, and leaves room there.
@@ -189,6 +207,7 @@ void rasterize(uint eye, uvec3 first, float iso) {
                             vertex_at(to_screen(polygon.corners[corner - 1])),
                             vertex_at(to_screen(polygon.corners[corner])), thread);
     }
+    barrier();
 }
 #else
 void find_origin(uint eye, uvec3 first) {
@@ -198,6 +217,7 @@ void find_origin(uint eye, uvec3 first) {
 
 // The vertices once more, for another eye.
 void list_again(Slab slab, uint eye, uvec3 first) {
+    barrier();
     for (uint row = first_row(slab); row < end_corner_row(slab); row += THREADS)
         list_row(row, rows[row].x, rows[row].y + bitCount(rows[row].x));
     find_origin(eye, first);
@@ -217,23 +237,27 @@ void project_vertices(uint eye, uvec3 first, float iso) {
     }
 }
 
-Vertex vertex_of(Listed triangle, uint corner) {
+Vertex vertex_of(Listed triangle, uint corner, ivec2 from) {
     const uint i = corner_vertex(triangle, corner);
     const int pixel = int(vertex_pixels[i]);
     Vertex vertex;
     vertex.pixel = ivec2(pixel << 16 >> 16, pixel >> 16);
     vertex.depth = uintBitsToFloat(vertex_depths[i]);
-    vertex.unsnapped = SNAPPED ? vec2(vertex.pixel + 256 * origin) / 256.0 : vertex_unsnapped[i];
+    vertex.unsnapped = SNAPPED ? vec2(vertex.pixel + 256 * from) / 256.0 : vertex_unsnapped[i];
     return vertex;
 }
 
+// Without a barrier behind it: a thread may go on to the next slab or block, and load its rows,
+// while others still draw. So what is set there before the next barrier is read here before this.
 void rasterize(uint eye, uvec3 first, float iso) {
+    const uint total = triangle_total;
+    const ivec2 from = origin;
     project_vertices(eye, first, iso);
     barrier();
-    for (uint i = gl_LocalInvocationIndex; i < triangle_total; i += THREADS) {
+    for (uint i = gl_LocalInvocationIndex; i < total; i += THREADS) {
         const Listed triangle = listed(i);
-        rasterize_small(eye, origin, vertex_of(triangle, 0), vertex_of(triangle, 1),
-                        vertex_of(triangle, 2));
+        rasterize_small(eye, from, vertex_of(triangle, 0, from), vertex_of(triangle, 1, from),
+                        vertex_of(triangle, 2, from));
     }
 }
 #endif
@@ -259,7 +283,6 @@ void draw_block(uint part, uvec3 first, float iso) {
             if (eye > 0) list_again(slab, eye, first);
 #endif
             rasterize(eye, first, iso);
-            barrier();
         }
         if (all) {
             slab.first += slab.count;
@@ -273,9 +296,11 @@ void draw_block(uint part, uvec3 first, float iso) {
 // A workgroup draws one block of its quartet, or all, or a part of each.
 void main() {
     const float iso = frame.surfaces[surface].w;
+    uint entry;
+    if (!my_quartet(entry)) return;
     for (uint n = gl_WorkGroupID.z / PARTS; n < 4; n += gl_NumWorkGroups.z / PARTS) {
         uvec3 block;
-        if (!my_block(n, block)) return;
+        if (!drawn_block(entry, n, block)) return;
         draw_block(gl_WorkGroupID.z % PARTS, block * BLOCK, iso);
     }
 }

@@ -37,9 +37,13 @@ struct Plane {
     float nearest, farthest;
 };
 
+vec2 between(Vertex from, Vertex to) {
+    return SNAPPED ? vec2(to.pixel - from.pixel) / 256.0 : to.unsnapped - from.unsnapped;
+}
+
 Plane plane_through(Vertex a, Vertex b, Vertex c) {
-    const vec3 ab = vec3(b.unsnapped - a.unsnapped, b.depth - a.depth);
-    const vec3 ac = vec3(c.unsnapped - a.unsnapped, c.depth - a.depth);
+    const vec3 ab = vec3(between(a, b), b.depth - a.depth);
+    const vec3 ac = vec3(between(a, c), c.depth - a.depth);
     precise const float area = ab.x * ac.y - ab.y * ac.x;
     precise const vec2 slope = vec2(ab.z * ac.y - ab.y * ac.z, ab.x * ac.z - ab.z * ac.x) / area;
     return Plane(a.unsnapped, area == 0.0 ? vec2(0.0) : slope, a.depth,

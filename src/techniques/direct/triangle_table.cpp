@@ -13,13 +13,12 @@ namespace {
 
 using gpu::Commands;
 
-// Where an edge of a cell is found from the cell's own corner row and place in it: rows on, and
-// bits on in edge_bits (cell_rows.glsl).
+// Where an edge of a cell (cell_rows.glsl) is, counted from the cell: rows on << 5, and bits on.
 uint32_t place_of_edge(uint32_t edge) {
     const uint32_t axis = edge >> 2, low = edge & 1, high = edge >> 1 & 1;
     const uint32_t rows = axis == 0 ? low + 9 * high : axis == 1 ? 9 * high : high;
     const uint32_t bits = axis == 0 ? 0 : axis == 1 ? 8 + low : 17 + low;
-    return rows | bits << 4;
+    return rows << 5 | bits;
 }
 
 }  // namespace
