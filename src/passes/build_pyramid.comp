@@ -12,7 +12,7 @@ layout(local_size_x = 16, local_size_y = 16) in;
 layout(set = 1, binding = 0) uniform texture2DArray depth;
 layout(set = 1, binding = 1, std430) writeonly buffer Pyramid { float pyramid[]; };
 
-shared float farthest[16][16];
+shared float farthest[16][16], thirds[4][4];  // squares of levels 1 and 3
 
 // Beyond the picture lies its last pixel again, which changes no minimum.
 float depth_at(uvec2 pixel) {
@@ -32,22 +32,42 @@ void store(uint level, uvec2 square, float value) {
     if (all(lessThan(square, size))) pyramid[first + square.x + size.x * square.y] = value;
 }
 
+// Of 2^(level - 1) squares of level 1 a side.
+void build(uint level, uvec2 square) {
+    const uint side = 1u << (level - 1);
+    float least = farthest[side * square.y][side * square.x];
+    for (uint i = 1; i < side * side; ++i)
+        least = farther(least, farthest[side * square.y + i / side][side * square.x + i % side]);
+    if (level == 3) thirds[square.y][square.x] = least;
+    store(level, gl_WorkGroupID.xy * (32u >> level) + square, least);
+}
+
+// Of 2^(level - 3) squares of level 3 a side.
+void build_from_thirds(uint level, uvec2 square) {
+    const uint side = 1u << (level - 3);
+    float least = thirds[side * square.y][side * square.x];
+    for (uint i = 1; i < side * side; ++i)
+        least = farther(least, thirds[side * square.y + i / side][side * square.x + i % side]);
+    store(level, gl_WorkGroupID.xy * (32u >> level) + square, least);
+}
+
+// Few barriers, as all of a workgroup wait at each: levels 2 and 3 from level 1, 4 and 5 from 3.
 void main() {
-    const uvec2 thread = gl_LocalInvocationID.xy, pixel = 2 * gl_GlobalInvocationID.xy;
-    float least = farther(farther(depth_at(pixel), depth_at(pixel + uvec2(1, 0))),
-                          farther(depth_at(pixel + uvec2(0, 1)), depth_at(pixel + uvec2(1, 1))));
+    const uvec2 place = gl_LocalInvocationID.xy, pixel = 2 * gl_GlobalInvocationID.xy;
+    const float least =
+        farther(farther(depth_at(pixel), depth_at(pixel + uvec2(1, 0))),
+                farther(depth_at(pixel + uvec2(0, 1)), depth_at(pixel + uvec2(1, 1))));
     store(1, gl_GlobalInvocationID.xy, least);
-    farthest[thread.y][thread.x] = least;
-    for (uint level = 2; level <= PYRAMID_LEVELS; ++level) {
-        // Squares of this level are threads whose coordinates are multiples of `step`.
-        const uint step = 1u << (level - 1), half_step = step / 2;
-        barrier();
-        if (any(notEqual(thread % step, uvec2(0)))) continue;
-        least = farther(
-            farther(farthest[thread.y][thread.x], farthest[thread.y][thread.x + half_step]),
-            farther(farthest[thread.y + half_step][thread.x],
-                    farthest[thread.y + half_step][thread.x + half_step]));
-        farthest[thread.y][thread.x] = least;
-        store(level, gl_GlobalInvocationID.xy / step, least);
-    }
+    farthest[place.y][place.x] = least;
+    barrier();
+    const uint thread = gl_LocalInvocationIndex;
+    if (thread < 64)
+        build(2, uvec2(thread % 8, thread / 8));
+    else if (thread < 80)
+        build(3, uvec2(thread % 4, thread / 4 % 4));
+    barrier();
+    if (thread < 4)
+        build_from_thirds(4, uvec2(thread % 2, thread / 2));
+    else if (thread == 64)
+        build_from_thirds(5, uvec2(0));
 }
