@@ -1,6 +1,6 @@
 // Lists of blocks. Active groups: the isovalue's, each a group's number and a mask of its active
-// blocks. Drawn quartets: the frame's, each a quartet's number (8 * group + place) and a mask of its
-// drawn blocks.
+// blocks. Drawn quartets: the frame's, each a quartet's number (8 * group + place) and a mask of
+// its drawn blocks.
 
 // The first block of a group.
 uvec3 group_origin(uint group) {
