@@ -14,13 +14,13 @@ ivec3 cells_left(uvec3 first_cell) { return ivec3(grid.voxels.xyz) - 1 - ivec3(f
 #define SIGNS_AT_ONCE 9
 #endif
 
-// The signs of a row of texels, up to the last one.
-uint signs_of_texels(uint brick, ivec3 first, int last, bool whole, float threshold) {
+// The signs of a row of texels: of nine, or the last one's again beyond `last`.
+uint signs_of_texels(uint brick, ivec3 first, bool nine, int last, float threshold) {
     uint bits = 0;
     [[dont_unroll]] for (int x = 0; x < 9; x += SIGNS_AT_ONCE) {
         float texels[SIGNS_AT_ONCE];
         [[unroll]] for (int i = 0; i < SIGNS_AT_ONCE; ++i)
-            texels[i] = fetch_texel(brick, first + ivec3(whole ? x + i : min(x + i, last), 0, 0));
+            texels[i] = fetch_texel(brick, first + ivec3(nine ? x + i : min(x + i, last), 0, 0));
         [[unroll]] for (int i = 0; i < SIGNS_AT_ONCE; ++i)
             bits |= (texels[i] >= threshold ? 1u : 0u) << x + i;
     }
@@ -45,10 +45,10 @@ uint load_signs(Brick brick, ivec3 start, float iso) {
 #endif
     const float threshold = texel_threshold(iso);
     if (all(lessThan(start + ivec3(8, 0, 0), ivec3(grid.voxels.xyz))))
-        return signs_of_texels(brick.index, start - brick.origin, 8, true, threshold);
+        return signs_of_texels(brick.index, start - brick.origin, true, 8, threshold);
     const ivec3 row = clamp_to_volume(start);
-    return signs_of_texels(brick.index, row - brick.origin, int(grid.voxels.x) - 1 - row.x, false,
-                           threshold);
+    return signs_of_texels(brick.index, row - brick.origin, false,
+                           int(grid.voxels.x) - 1 - row.x, threshold);
 }
 
 // Edges that the surface crosses whose lower corner is in this corner row: bits 0..7 along x, 8..16

@@ -18,15 +18,8 @@ struct Slab {
     uint first, count;
 };
 
-// Whether the slab is its block, and all of that in the volume. Most are, and then there is less to
-// ask: the compute rasterizer's time goes by its instructions.
-bool is_whole(Slab slab, ivec3 left) {
-    return slab.count == CELL_ROWS && all(greaterThanEqual(left, ivec3(BLOCK)));
-}
-
 // Whether a cell row is in the slab, and in the volume.
 bool in_slab(Slab slab, uint y, uint z, ivec3 left) {
-    if (is_whole(slab, left)) return max(y, z) < 8;
     return y < 8 && z < 8 && int(y) < left.y && int(z) < left.z &&
            y + 8 * z - slab.first < slab.count;
 }
@@ -37,15 +30,13 @@ uint end_corner_row(Slab slab) { return 9 * ((slab.first + slab.count + 7) / 8 +
 
 // Crossed edges of a corner row that cells of the slab have.
 uint crossed_edges(CellRow row, uint y, uint z, Slab slab, ivec3 left, uint cells_x) {
-    const uint edges = edge_bits(row.a, row.b, row.c);
-    if (is_whole(slab, left))
-        return edges & (EDGES_X | (y < 8 ? EDGES_Y : 0) | (z < 8 ? EDGES_Z : 0));
     // Cell rows around the corner row; y - 1 and z - 1 wrap to rows that are not there.
     const bool here = in_slab(slab, y, z, left), below = in_slab(slab, y - 1, z, left);
     const bool under = in_slab(slab, y, z - 1, left), both = in_slab(slab, y - 1, z - 1, left);
     const uint corners_x = cells_x << 1 | cells_x;
-    return edges & ((here || below || under || both ? cells_x : 0) |
-                    (here || under ? corners_x << 8 : 0) | (here || below ? corners_x << 17 : 0));
+    return edge_bits(row.a, row.b, row.c) & ((here || below || under || both ? cells_x : 0) |
+                                             (here || under ? corners_x << 8 : 0) |
+                                             (here || below ? corners_x << 17 : 0));
 }
 
 // A cell: its corner row << 5 | x. Its first place in triangle_table.
