@@ -64,8 +64,8 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 
 #include "techniques/direct/triangle.glsl"
 
-// Shared memory is what limits this shader: a GPU may have no more than 48 KiB a multiprocessor for
-// all workgroups on it, and hides their waiting for voxels and for each other by having many. So
+// A GPU may have no more than 48 KiB of shared memory a multiprocessor for all workgroups on it, and
+// hides their waiting for voxels and for each other by having many: here 12, at 4 KiB each. So
 // voxels are not kept, and the lists are as long as most blocks need; blocks with more are worked
 // off in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197
 // crossed edges and 160 triangles.
@@ -83,36 +83,33 @@ shared uint vertex_pixels[MAX_LISTED], vertex_depths[MAX_LISTED];
 shared vec2 vertex_unsnapped[SNAPPED ? 1 : MAX_LISTED];
 shared ivec2 origin;  // a pixel that a corner of the block lies in
 
-// Takes `count` places in a list whose length is the shared `total`; `first` becomes the first one.
-// One atomic operation a subgroup where the device can add across it: threads wait for each other
-// at the same address. Small counts are added bit by bit, by ballots: those are faster than the
-// device's own sums.
+// The first one of so many places at the end of a list. One atomic operation a subgroup where the
+// device can add across it: threads wait for each other at the same address.
 #ifdef SUBGROUPS
-#define RESERVE(total, count, first)                         \
-    {                                                        \
-        const uint up_to = subgroupInclusiveAdd(count);      \
-        uint sum = subgroupMax(up_to);                       \
-        if (subgroupElect()) sum = atomicAdd(total, sum);    \
-        first = subgroupBroadcastFirst(sum) + up_to - count; \
-    }
+uint reserve_rows(uint counts) {  // as row_totals
+    const uint up_to = subgroupInclusiveAdd(counts);
+    uint first = subgroupMax(up_to);  // of all
+    if (subgroupElect()) first = atomicAdd(row_totals, first);
+    return subgroupBroadcastFirst(first) + up_to - counts;
+}
 
-// One bit of the counts: what the threads before this one have in it; to `sum`, what all have.
+// One bit of all threads' counts: adds its share to their sum, and returns that of those before.
 uint add_bit(uint count, uint bit, inout uint sum) {
     const uvec4 ballot = subgroupBallot((count >> bit & 1u) != 0);
     sum += subgroupBallotBitCount(ballot) << bit;
     return subgroupBallotExclusiveBitCount(ballot) << bit;
 }
-#define RESERVE_FEW(total, count, first)                                                        \
-    {                                                                                           \
-        uint sum = 0;                                                                           \
-        const uint before =                                                                     \
-            add_bit(count, 0, sum) + add_bit(count, 1, sum) + add_bit(count, 2, sum);           \
-        if (subgroupElect()) sum = atomicAdd(total, sum);                                       \
-        first = subgroupBroadcastFirst(sum) + before;                                           \
-    }
+
+uint reserve_triangles(uint count) {  // at most 5: three ballots are faster than a sum
+    uint first = 0;
+    const uint before = add_bit(count, 0, first) + add_bit(count, 1, first) +
+                        add_bit(count, 2, first);
+    if (subgroupElect()) first = atomicAdd(triangle_total, first);
+    return subgroupBroadcastFirst(first) + before;
+}
 #else
-#define RESERVE(total, count, first) first = atomicAdd(total, count);
-#define RESERVE_FEW RESERVE
+uint reserve_rows(uint counts) { return atomicAdd(row_totals, counts); }
+uint reserve_triangles(uint count) { return atomicAdd(triangle_total, count); }
 #endif
 
 uint first_row(Slab slab) { return first_corner_row(slab) + gl_LocalInvocationIndex; }
@@ -148,8 +145,7 @@ void list_rows(Slab slab, ivec3 left) {
             cells = in_slab(slab, y, z, left) ? cells : 0;
         }
         const uint counts = bitCount(crossed) | bitCount(cells) << 16;
-        uint first;
-        RESERVE(row_totals, counts, first)
+        const uint first = reserve_rows(counts);
         rows[row] = uvec2(crossed, first & 0xffffu);
         const uint end = first + counts;
         uint cell = end >> 16;
@@ -167,9 +163,7 @@ void list_triangles() {
     for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
         const uint cell = vertex_depths[i];
         const uint entry = table_entry(cell_row(cell >> 5), cell & 31u);
-        const uint count = triangle_count(entry);
-        uint first;
-        RESERVE_FEW(triangle_total, count, first)
+        const uint count = triangle_count(entry), first = reserve_triangles(count);
         if (first + count <= MAX_TRIANGLES) list_triangles_of(cell, entry, count, first);
     }
 }
