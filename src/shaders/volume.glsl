@@ -47,7 +47,8 @@ float fetch_texel(uint brick, ivec3 texel) {
 #endif
 }
 
-// Whether a voxel's value is at least `iso`, as a comparison of its texel: between two steps.
+// What a texel is compared with to know whether its voxel is at least `iso`: halfway between two
+// steps, so that nothing needs rounding.
 float texel_threshold(float iso) {
     if (VOXEL_BITS == 8) return (ceil(iso) - 0.5) / 255.0;
     if (VOXEL_BITS == 16) return (ceil(iso) - 0.5) / 65535.0;
