@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // variant build_pyramid_surfaces: -DSURFACES
-// Workgroup: 32x32 pixels of one eye. Thread: 2x2 of them. Out: the farthest depth (least: depth is
-// reversed) of squares of 2 to 32 pixels. SURFACES: of their pixels that have a surface; 0 only if
-// none has.
+// Workgroup: 32x32 pixels of one eye. Thread: 2x2 of them, or several such squares. Out: the
+// farthest depth (least: depth is reversed) of squares of 2 to 32 pixels. SURFACES: of their pixels
+// that have a surface; 0 only if none has.
 #include "shaders/scene.glsl"
 #include "shaders/pyramid.glsl"
 
-layout(local_size_x = 16, local_size_y = 16) in;
+layout(local_size_x_id = 1) in;
 
 layout(set = 1, binding = 0) uniform texture2DArray depth;
 layout(set = 1, binding = 1, std430) writeonly buffer Pyramid { float pyramid[]; };
@@ -53,21 +53,28 @@ void build_from_thirds(uint level, uvec2 square) {
 
 // Few barriers, as all of a workgroup wait at each: levels 2 and 3 from level 1, 4 and 5 from 3.
 void main() {
-    const uvec2 place = gl_LocalInvocationID.xy, pixel = 2 * gl_GlobalInvocationID.xy;
-    const float least =
-        farther(farther(depth_at(pixel), depth_at(pixel + uvec2(1, 0))),
-                farther(depth_at(pixel + uvec2(0, 1)), depth_at(pixel + uvec2(1, 1))));
-    store(1, gl_GlobalInvocationID.xy, least);
-    farthest[place.y][place.x] = least;
+    const uint threads = gl_WorkGroupSize.x, thread = gl_LocalInvocationIndex;
+    for (uint i = thread; i < 256; i += threads) {
+        const uvec2 place = uvec2(i % 16, i / 16), square = 16 * gl_WorkGroupID.xy + place;
+        const uvec2 pixel = 2 * square;
+        const float least =
+            farther(farther(depth_at(pixel), depth_at(pixel + uvec2(1, 0))),
+                    farther(depth_at(pixel + uvec2(0, 1)), depth_at(pixel + uvec2(1, 1))));
+        store(1, square, least);
+        farthest[place.y][place.x] = least;
+    }
     barrier();
-    const uint thread = gl_LocalInvocationIndex;
-    if (thread < 64)
-        build(2, uvec2(thread % 8, thread / 8));
-    else if (thread < 80)
-        build(3, uvec2(thread % 4, thread / 4 % 4));
+    for (uint i = thread; i < 80; i += threads) {
+        if (i < 64)
+            build(2, uvec2(i % 8, i / 8));
+        else
+            build(3, uvec2(i % 4, i / 4 % 4));
+    }
     barrier();
-    if (thread < 4)
-        build_from_thirds(4, uvec2(thread % 2, thread / 2));
-    else if (thread == 64)
-        build_from_thirds(5, uvec2(0));
+    for (uint i = thread; i < 5; i += threads) {
+        if (i < 4)
+            build_from_thirds(4, uvec2(i % 2, i / 2));
+        else
+            build_from_thirds(5, uvec2(0));
+    }
 }

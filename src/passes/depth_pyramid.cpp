@@ -4,6 +4,7 @@
 
 #include "build_pyramid_comp.h"
 #include "build_pyramid_surfaces.h"
+#include "gpu/device.h"
 
 namespace isorast {
 
@@ -33,9 +34,11 @@ void DepthPyramid::fit(const Target& target) {
 
 void DepthPyramid::build(gpu::Commands& commands, const Target& target, bool surfaces) {
     gpu::Pipeline& build = build_[surfaces ? 1 : 0];
+    const uint32_t threads = grid_.device().is_cpu() ? 16 : 256;  // CPU drivers: dear at barriers
     if (!build)
         build = gpu::Pipeline::compute(
-            grid_.device(), grid_.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0),
+            grid_.device(),
+            grid_.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0, {threads}),
             surfaces ? std::span<const uint32_t>(build_pyramid_surfaces) : build_pyramid_comp);
     const auto pass = commands.pass(surfaces ? "surface pyramid" : "depth pyramid");
     commands.bind(build, {target.depth, pyramid_});

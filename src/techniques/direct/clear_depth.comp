@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Workgroup: 32x32 pixels of one eye. Thread: 4x4 of them, eight apart. Out: depth 0. Clearing an
-// image by a command is fixed-function work, forty times slower where graphics is throttled.
+// Workgroup: 32x32 pixels of one eye. Thread: 4x4 of them, eight apart. Out: depth 0. For GPUs:
+// there clearing by a command is fixed-function work, forty times slower if graphics is throttled.
 #include "shaders/scene.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
