@@ -32,22 +32,17 @@ void store(uint level, uvec2 square, float value) {
     if (all(lessThan(square, size))) pyramid[first + square.x + size.x * square.y] = value;
 }
 
-// Of 2^(level - 1) squares of level 1 a side.
+// Of the finer squares in it: of level 1, or, above level 3, of level 3.
 void build(uint level, uvec2 square) {
-    const uint side = 1u << (level - 1);
-    float least = farthest[side * square.y][side * square.x];
-    for (uint i = 1; i < side * side; ++i)
-        least = farther(least, farthest[side * square.y + i / side][side * square.x + i % side]);
+    const bool from_thirds = level > 3;
+    const uint side = 1u << (from_thirds ? level - 3 : level - 1);
+    float least = 1.0;
+    for (uint i = 0; i < side * side; ++i) {
+        const uvec2 finer = side * square + uvec2(i % side, i / side);
+        const float depth = from_thirds ? thirds[finer.y][finer.x] : farthest[finer.y][finer.x];
+        least = i == 0 ? depth : farther(least, depth);
+    }
     if (level == 3) thirds[square.y][square.x] = least;
-    store(level, gl_WorkGroupID.xy * (32u >> level) + square, least);
-}
-
-// Of 2^(level - 3) squares of level 3 a side.
-void build_from_thirds(uint level, uvec2 square) {
-    const uint side = 1u << (level - 3);
-    float least = thirds[side * square.y][side * square.x];
-    for (uint i = 1; i < side * side; ++i)
-        least = farther(least, thirds[side * square.y + i / side][side * square.x + i % side]);
     store(level, gl_WorkGroupID.xy * (32u >> level) + square, least);
 }
 
@@ -73,8 +68,8 @@ void main() {
     barrier();
     for (uint i = thread; i < 5; i += threads) {
         if (i < 4)
-            build_from_thirds(4, uvec2(i % 2, i / 2));
+            build(4, uvec2(i % 2, i / 2));
         else
-            build_from_thirds(5, uvec2(0));
+            build(5, uvec2(0));
     }
 }
