@@ -6,10 +6,6 @@ layout(constant_id = 1) const bool EXACT = false;
 // Sample through the texture unit, as in the paper; CPU drivers round its results to 8 bits for
 // 8-bit voxels, so there voxels are fetched and interpolated.
 layout(constant_id = 2) const bool FILTERED = true;
-// Of a ray that need not be right but soon back, as all others wait for the last one: longer steps,
-// no bisection, and it gives up after so many nodes of the octree.
-layout(constant_id = 3) const bool GUESS = false;
-const int MOST_NODES = GUESS ? 96 : 65536;
 
 float field_at(Brick brick, vec3 p) {
     return FILTERED ? sample_filtered(brick, p) : sample_exactly(brick, p);
@@ -47,13 +43,13 @@ vec3 position_at(March march, float t) {
 // The paper's way through a block that the isovalue crosses.
 bool step_through(inout March march, ivec3 block, float end) {
     const Brick brick = brick_of(block * int(BLOCK));
-    const float step = (GUESS ? 2.0 : 0.5) / length(march.ray.direction);
+    const float step = 0.5 / length(march.ray.direction);
     float before = march.t;
     for (float t = march.t; ; t = min(t + step, end)) {
         const bool was_inside = march.inside;
         if (crossed_to(march, field_at(brick, position_at(march, t)) >= march.iso)) {
             float a = before, b = t;
-            for (int i = 0; i < (GUESS ? 0 : 3); ++i) {
+            for (int i = 0; i < 3; ++i) {
                 const float middle = 0.5 * (a + b);
                 const bool inside = field_at(brick, position_at(march, middle)) >= march.iso;
                 if (inside == was_inside) a = middle;
@@ -106,8 +102,8 @@ bool solve_through(inout March march, ivec3 block, float end) {
     return false;
 }
 
-// The first crossing of the isovalue along the ray, as t; false if there is none.
-bool first_hit(Ray ray, float iso, out float hit) {
+// From where the ray enters the volume, or what clip planes leave of it, to `end`.
+March begin_march(Ray ray, float iso, out float end) {
     // An axis that the ray does not move along gets the least movement that still divides.
     const vec3 least = vec3(1e-20 + 1e-9 * length(ray.direction));
     ray.direction = mix(ray.direction, least, lessThan(abs(ray.direction), least));
@@ -119,18 +115,23 @@ bool first_hit(Ray ray, float iso, out float hit) {
     const vec3 a = -ray.origin * march.inverse, b = (last - ray.origin) * march.inverse;
     const vec3 enter = min(a, b), leave = max(a, b);
     march.t = max(max(max(enter.x, enter.y), enter.z), frame.depth_range.x);
-    float end = min(min(min(leave.x, leave.y), leave.z), frame.depth_range.y);
+    end = min(min(min(leave.x, leave.y), leave.z), frame.depth_range.y);
     for (uint i = 0; i < frame.counts.y; ++i) {
         const float across = dot(frame.clips[i].xyz, ray.direction);
         const float t = -(dot(frame.clips[i].xyz, ray.origin) + frame.clips[i].w) / across;
         if (across > 0.0) march.t = max(march.t, t);
         else end = min(end, t);
     }
+    return march;
+}
 
+// The first crossing of the isovalue along the ray, as t; false if there is none.
+bool first_hit(Ray ray, float iso, out float hit) {
+    float end;
+    March march = begin_march(ray, iso, end);
     const uint top = grid.bricks.w - 1;
     uint level = top;
-    for (int i = 0; march.t < end; ++i) {
-        if (i == MOST_NODES) return false;
+    for (int i = 0; i < 65536 && march.t < end; ++i) {
         const uint shift = 3 + level;
         const vec3 p = position_at(march, march.t + march.nudge);
         const uvec3 node = min(uvec3(p) >> shift, grid.levels[level].xyz - 1);

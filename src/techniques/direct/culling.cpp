@@ -31,9 +31,6 @@ constexpr uint32_t LISTS = 3;
 // of them (512^3), and as MANY (1024^3) to cast rays after each change.
 constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18, MANY = 1 << 20;
 
-// Rays that guess: one in a square of so many pixels a side.
-constexpr int32_t RAY_SIDE = 4;
-
 // Of the camera, from one frame to the next.
 struct Motion {
     double degrees, distance;  // as a share of the distance to the target
@@ -85,11 +82,9 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     if (occlusion_->kind() == Occlusion::hiz)
         drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
-    guess_visible_ =
-        gpu::Pipeline::compute(device,
-                               grid.pipeline_info("guess visible", {Kind::buffer}, 4,
-                                                  {/* EXACT= */ 0, filtered, /* GUESS= */ 1}),
-                               grid.pick(guess_visible_comp, guess_visible_comp_bricked));
+    guess_visible_ = gpu::Pipeline::compute(
+        device, grid.pipeline_info("guess visible", {Kind::buffer}, 4, {/* EXACT= */ 0, filtered}),
+        grid.pick(guess_visible_comp, guess_visible_comp_bricked));
 }
 
 uint64_t Culling::gpu_bytes() const {
@@ -166,9 +161,14 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
 
 void Culling::guess_visible(Commands& commands, const Frame& frame) const {
     const auto pass = commands.pass("guess visible");
-    const auto groups = [](uint32_t pixels) { return (pixels / RAY_SIDE + 7) / 8; };
+    // Four rays or so across a block, where the volume fills the picture.
+    const glm::uvec3 blocks(grid_.info().blocks);
+    const uint32_t across = 4 * std::max({blocks.x, blocks.y, blocks.z});
+    const uint32_t shorter = std::min(frame.size.width, frame.size.height);
+    const uint32_t side = std::clamp(shorter / across, 2u, 8u);
+    const auto groups = [side](uint32_t pixels) { return (pixels / side + 7) / 8; };
     commands.bind(guess_visible_, {visible_[seen_]});
-    commands.push(RAY_SIDE);
+    commands.push(side);
     commands.dispatch(groups(frame.size.width), groups(frame.size.height), frame.eyes());
     commands.barrier();
 }

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Workgroup: 8x8 rays, each in the middle of a square of pixels. Thread: one ray. Out: the block
 // that it hits, as visible: a guess, after a change.
 #include "shaders/scene.glsl"
@@ -14,11 +15,67 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(push_constant) uniform Push { int side; };  // of a square
 
+// All wait for the last ray, and each ray for what it fetches: so it fetches much at once, takes
+// long steps and gives up after so many.
+const int MOST_STEPS = 48;
+const uint LEVELS = 4;   // of the min-max pyramid, the finest
+const uint SAMPLES = 4;  // across a block
+
+// The level of the largest node at p that the isovalue does not cross, and which side of the
+// surface that is on; -1 if it crosses them all.
+int empty_level(uvec3 p, float iso, out bool inside) {
+    int found = -1;
+    inside = false;
+    [[unroll]] for (uint i = 0; i < LEVELS; ++i) {
+        const uint level = min(i, grid.bricks.w - 1);
+        const uvec3 node = min(p >> 3 + level, grid.levels[level].xyz - 1);
+        const vec2 range = node_range(node_index(level, node));
+        if (crosses(range, iso)) continue;
+        found = int(level);
+        inside = range.x >= iso;
+    }
+    return found;
+}
+
+// Whether the ray crosses the surface on its way to `end`, within a block.
+bool crosses_block(inout March march, ivec3 block, float end) {
+    const Brick brick = brick_of(block * int(BLOCK));
+    float values[SAMPLES];
+    [[unroll]] for (uint i = 0; i < SAMPLES; ++i) {
+        const float t = mix(march.t, end, (float(i) + 0.5) / float(SAMPLES));
+        values[i] = field_at(brick, position_at(march, t));
+    }
+    for (uint i = 0; i < SAMPLES; ++i)
+        if (crossed_to(march, values[i] >= march.iso)) return true;
+    return false;
+}
+
+// Where the ray enters the block in which it hits the surface, as t.
+const float NEVER = 1e30;
+float guess_hit(Ray ray, float iso) {
+    float end;
+    March march = begin_march(ray, iso, end);
+    for (int i = 0; i < MOST_STEPS && march.t < end; ++i) {
+        const uvec3 p = uvec3(position_at(march, march.t + march.nudge));
+        bool inside;
+        const int level = empty_level(p, iso, inside);
+        const uint shift = 3 + max(level, 0);
+        const uvec3 node = p >> shift;
+        const float leave = exit_of(march, vec3(node << shift), vec3((node + 1) << shift));
+        const float there = min(max(leave, march.t + march.nudge), end);
+        if (level < 0 ? crosses_block(march, ivec3(node), there) : crossed_to(march, inside))
+            return march.t + march.nudge;
+        march.t = there;
+    }
+    return NEVER;
+}
+
 void main() {
     const ivec2 middle = side * ivec2(gl_GlobalInvocationID.xy) + side / 2;
     if (any(greaterThanEqual(middle, ivec2(frame.size.xy)))) return;
     const Ray ray = pixel_ray(gl_GlobalInvocationID.z, vec2(middle));  // z: the eye
-    float t;
-    uint number;
-    if (nearest_hit(ray, t, number)) mark_visible(cell_of(ray.origin + t * ray.direction));
+    float nearest = NEVER;
+    for (uint i = 0; i < frame.size.z; ++i)
+        nearest = min(nearest, guess_hit(ray, frame.surfaces[i].w));
+    if (nearest < NEVER) mark_visible(cell_of(ray.origin + nearest * ray.direction));
 }
