@@ -125,31 +125,49 @@ March begin_march(Ray ray, float iso, out float end) {
     return march;
 }
 
+// Levels of the min-max pyramid, the finest, that are looked at together: as a ray waits for what it
+// fetches, that takes no longer than one, and there are none to climb up and down.
+const uint LEVELS = 3;
+
+// The largest node around a point that the isovalue does not cross, and which side of the surface
+// that is on; or the block.
+struct Node {
+    uint level;
+    uvec3 place;
+    bool crossed, inside;
+};
+
+Node node_around(vec3 p, float iso) {
+    Node node;
+    [[unroll]] for (uint i = 0; i < LEVELS; ++i) {
+        const uint level = min(i, grid.bricks.w - 1);
+        const uvec3 place = min(uvec3(p) >> 3 + level, grid.levels[level].xyz - 1);
+        const vec2 range = node_range(node_index(level, place));
+        const bool crossed = crosses(range, iso);
+        if (i == 0 || !crossed) node = Node(level, place, crossed, range.x >= iso);
+    }
+    return node;
+}
+
+// Where the ray leaves a node that it is in, or its way ends, as t.
+float leave_node(March march, Node node, float end) {
+    const uint shift = 3 + node.level;
+    const vec3 low = vec3(node.place << shift), high = vec3((node.place + 1) << shift);
+    return min(max(exit_of(march, low, high), march.t + march.nudge), end);
+}
+
 // The first crossing of the isovalue along the ray, as t; false if there is none.
 bool first_hit(Ray ray, float iso, out float hit) {
     float end;
     March march = begin_march(ray, iso, end);
-    const uint top = grid.bricks.w - 1;
-    uint level = top;
     for (int i = 0; i < 65536 && march.t < end; ++i) {
-        const uint shift = 3 + level;
-        const vec3 p = position_at(march, march.t + march.nudge);
-        const uvec3 node = min(uvec3(p) >> shift, grid.levels[level].xyz - 1);
-        const vec2 range = node_range(node_index(level, node));
-        const float node_end = exit_of(march, vec3(node << shift), vec3((node + 1) << shift));
-        const float there = min(max(node_end, march.t + march.nudge), end);
-        if (!crosses(range, iso)) {
-            if (crossed_to(march, range.x >= iso)) break;
-            march.t = there;
-            level = min(level + 1, top);
-        } else if (level > 0) {
-            --level;
-        } else {
-            if (EXACT ? solve_through(march, ivec3(node), there)
-                      : step_through(march, ivec3(node), there)) break;
-            march.t = there;
-        }
-        if (march.t >= end) return false;
+        const Node node = node_around(position_at(march, march.t + march.nudge), iso);
+        const float leave = leave_node(march, node, end);
+        if (!node.crossed ? crossed_to(march, node.inside)
+            : EXACT       ? solve_through(march, ivec3(node.place), leave)
+                          : step_through(march, ivec3(node.place), leave))
+            break;
+        march.t = leave;
     }
     hit = march.t;
     return march.t < end && march.known;

@@ -18,24 +18,7 @@ layout(push_constant) uniform Push { int side; };  // of a square
 // All wait for the last ray, and each ray for what it fetches: so it fetches much at once, takes
 // long steps and gives up after so many.
 const int MOST_STEPS = 48;
-const uint LEVELS = 4;   // of the min-max pyramid, the finest
 const uint SAMPLES = 4;  // across a block
-
-// The level of the largest node at p that the isovalue does not cross, and which side of the
-// surface that is on; -1 if it crosses them all.
-int empty_level(uvec3 p, float iso, out bool inside) {
-    int found = -1;
-    inside = false;
-    [[unroll]] for (uint i = 0; i < LEVELS; ++i) {
-        const uint level = min(i, grid.bricks.w - 1);
-        const uvec3 node = min(p >> 3 + level, grid.levels[level].xyz - 1);
-        const vec2 range = node_range(node_index(level, node));
-        if (crosses(range, iso)) continue;
-        found = int(level);
-        inside = range.x >= iso;
-    }
-    return found;
-}
 
 // Whether the ray crosses the surface on its way to `end`, within a block.
 bool crosses_block(inout March march, ivec3 block, float end) {
@@ -56,16 +39,12 @@ float guess_hit(Ray ray, float iso) {
     float end;
     March march = begin_march(ray, iso, end);
     for (int i = 0; i < MOST_STEPS && march.t < end; ++i) {
-        const uvec3 p = uvec3(position_at(march, march.t + march.nudge));
-        bool inside;
-        const int level = empty_level(p, iso, inside);
-        const uint shift = 3 + max(level, 0);
-        const uvec3 node = p >> shift;
-        const float leave = exit_of(march, vec3(node << shift), vec3((node + 1) << shift));
-        const float there = min(max(leave, march.t + march.nudge), end);
-        if (level < 0 ? crosses_block(march, ivec3(node), there) : crossed_to(march, inside))
+        const Node node = node_around(position_at(march, march.t + march.nudge), iso);
+        const float leave = leave_node(march, node, end);
+        if (node.crossed ? crosses_block(march, ivec3(node.place), leave)
+                         : crossed_to(march, node.inside))
             return march.t + march.nudge;
-        march.t = there;
+        march.t = leave;
     }
     return NEVER;
 }

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // variant march_numbered_frag: -DNUMBERED
 // Thread: one ray. Out: the depth of the first hit, and the number of its surface: the paper's
 // reference as the paper has it, in a fragment shader.
