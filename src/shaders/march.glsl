@@ -125,11 +125,11 @@ March begin_march(Ray ray, float iso, out float end) {
     return march;
 }
 
-// Levels of the min-max pyramid, the finest, that are looked at together: as a ray waits for what it
-// fetches, that takes no longer than one, and there are none to climb up and down.
+// Levels of the min-max pyramid, every second one, that are looked at together: as a ray waits for
+// what it fetches, that takes no longer than one, and there are none to climb up and down.
 const uint LEVELS = 3;
 
-// The largest node around a point that the isovalue does not cross, and which side of the surface
+// The largest of their nodes around a point that the isovalue does not cross, and which side of the surface
 // that is on; or the block.
 struct Node {
     uint level;
@@ -140,7 +140,7 @@ struct Node {
 Node node_around(vec3 p, float iso) {
     Node node;
     [[unroll]] for (uint i = 0; i < LEVELS; ++i) {
-        const uint level = min(i, grid.bricks.w - 1);
+        const uint level = min(2 * i, grid.bricks.w - 1);
         const uvec3 place = min(uvec3(p) >> 3 + level, grid.levels[level].xyz - 1);
         const vec2 range = node_range(node_index(level, place));
         const bool crossed = crosses(range, iso);

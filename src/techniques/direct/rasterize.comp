@@ -64,8 +64,8 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 
 #include "techniques/direct/triangle.glsl"
 
-// A GPU may have no more than 48 KiB of shared memory a multiprocessor for all workgroups on it, and
-// hides their waiting for voxels and for each other by having many: here 12, at 4 KiB each. So
+// A GPU may have no more than 48 KiB of shared memory a multiprocessor for all workgroups on it,
+// and hides their waiting for voxels and for each other by having many: here 12, at 4 KiB each. So
 // voxels are not kept, and the lists are as long as most blocks need; blocks with more are worked
 // off in slabs: halves, quarters, ... down to half a layer, 8x4x1 cells, which has at most 197
 // crossed edges and 160 triangles.

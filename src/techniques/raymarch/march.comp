@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Workgroup: 8x8 pixels of one eye. Thread: one ray. Out: the depth of the first hit, and the number
-// of its surface.
+// Workgroup: 8x8 pixels of one eye. Thread: one ray. Out: the depth of the first hit, and the
+// number of its surface.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
