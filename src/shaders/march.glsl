@@ -129,8 +129,8 @@ March begin_march(Ray ray, float iso, out float end) {
 // what it fetches, that takes no longer than one, and there are none to climb up and down.
 const uint LEVELS = 3;
 
-// The largest of their nodes around a point that the isovalue does not cross, and which side of the surface
-// that is on; or the block.
+// The largest of their nodes around a point that the isovalue does not cross, and which side of the
+// surface that is on; or the block.
 struct Node {
     uint level;
     uvec3 place;
