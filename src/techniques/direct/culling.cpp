@@ -83,7 +83,9 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
         drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     guess_visible_ = gpu::Pipeline::compute(
-        device, grid.pipeline_info("guess visible", {Kind::buffer}, 4, {/* EXACT= */ 0, filtered}),
+        device,
+        grid.pipeline_info("guess visible", {Kind::buffer}, 4,
+                           {/* EXACT= */ 0, filtered, hardware ? 192u : 48u}),
         grid.pick(guess_visible_comp, guess_visible_comp_bricked));
 }
 
@@ -161,9 +163,9 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
 
 void Culling::guess_visible(Commands& commands, const Frame& frame) const {
     const auto pass = commands.pass("guess visible");
-    // Four rays or so across a block, where the volume fills the picture.
+    // Rays across a block, where the volume fills the picture: more where blocks are dear.
     const glm::uvec3 blocks(grid_.info().blocks);
-    const uint32_t across = 4 * std::max({blocks.x, blocks.y, blocks.z});
+    const uint32_t across = (sizes_ == 1 ? 8 : 4) * std::max({blocks.x, blocks.y, blocks.z});
     const uint32_t shorter = std::min(frame.size.width, frame.size.height);
     const uint32_t side = std::clamp(shorter / across, 2u, 8u);
     const auto groups = [side](uint32_t pixels) { return (pixels / side + 7) / 8; };

@@ -16,8 +16,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Push { int side; };  // of a square
 
 // All wait for the last ray, and each ray for what it fetches: so it fetches much at once, takes
-// long steps and gives up after so many.
-const int MOST_STEPS = 48;
+// long steps and gives up after so many: soon, where blocks are drawn fast.
+layout(constant_id = 3) const uint MOST_STEPS = 48;
 const uint SAMPLES = 4;  // across a block
 
 // Whether the ray crosses the surface on its way to `end`, within a block.
@@ -38,7 +38,7 @@ const float NEVER = 1e30;
 float guess_hit(Ray ray, float iso) {
     float end;
     March march = begin_march(ray, iso, end);
-    for (int i = 0; i < MOST_STEPS && march.t < end; ++i) {
+    for (uint i = 0; i < MOST_STEPS && march.t < end; ++i) {
         const Node node = node_around(position_at(march, march.t + march.nudge), iso);
         const float leave = leave_node(march, node, end);
         if (node.crossed ? crosses_block(march, ivec3(node.place), leave)
