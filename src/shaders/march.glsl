@@ -165,12 +165,13 @@ bool first_hit(Ray ray, float iso, out float hit) {
         const float leave = leave_node(march, node, end);
         if (!node.crossed ? crossed_to(march, node.inside)
             : EXACT       ? solve_through(march, ivec3(node.place), leave)
-                          : step_through(march, ivec3(node.place), leave))
-            break;
+                          : step_through(march, ivec3(node.place), leave)) {
+            hit = march.t;
+            return march.t < end;
+        }
         march.t = leave;
     }
-    hit = march.t;
-    return march.t < end && march.known;
+    return false;
 }
 
 // The first surface along the ray, as t, and its number; false if there is none.

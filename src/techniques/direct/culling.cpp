@@ -31,6 +31,10 @@ constexpr uint32_t LISTS = 3;
 // of them (512^3), and as MANY (1024^3) to cast rays after each change.
 constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18, MANY = 1 << 20;
 
+// Rays that guess: how many across a block where the volume fills the picture, and after how many
+// steps each gives up. More where blocks are dear: the hardware rasterizer's.
+constexpr uint32_t RAYS = 4, RAYS_IF_DEAR = 8, STEPS = 48, STEPS_IF_DEAR = 192;
+
 // Of the camera, from one frame to the next.
 struct Motion {
     double degrees, distance;  // as a share of the distance to the target
@@ -85,7 +89,7 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     guess_visible_ = gpu::Pipeline::compute(
         device,
         grid.pipeline_info("guess visible", {Kind::buffer}, 4,
-                           {/* EXACT= */ 0, filtered, hardware ? 192u : 48u}),
+                           {/* EXACT= */ 0, filtered, hardware ? STEPS_IF_DEAR : STEPS}),
         grid.pick(guess_visible_comp, guess_visible_comp_bricked));
 }
 
@@ -163,9 +167,9 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
 
 void Culling::guess_visible(Commands& commands, const Frame& frame) const {
     const auto pass = commands.pass("guess visible");
-    // Rays across a block, where the volume fills the picture: more where blocks are dear.
     const glm::uvec3 blocks(grid_.info().blocks);
-    const uint32_t across = (sizes_ == 1 ? 8 : 4) * std::max({blocks.x, blocks.y, blocks.z});
+    const uint32_t rays = sizes_ == 1 ? RAYS_IF_DEAR : RAYS;
+    const uint32_t across = rays * std::max({blocks.x, blocks.y, blocks.z});
     const uint32_t shorter = std::min(frame.size.width, frame.size.height);
     const uint32_t side = std::clamp(shorter / across, 2u, 8u);
     const auto groups = [side](uint32_t pixels) { return (pixels / side + 7) / 8; };

@@ -17,7 +17,7 @@ layout(push_constant) uniform Push { int side; };  // of a square
 
 // All wait for the last ray, and each ray for what it fetches: so it fetches much at once, takes
 // long steps and gives up after so many: soon, where blocks are drawn fast.
-layout(constant_id = 3) const uint MOST_STEPS = 48;
+layout(constant_id = 3) const uint MOST_STEPS = 1;
 const uint SAMPLES = 4;  // across a block
 
 // Whether the ray crosses the surface on its way to `end`, within a block.
