@@ -34,9 +34,10 @@ float depth_of_square(uint eye, uint level, uint first, uvec2 square) {
 }
 
 // True if depth already drawn is nearer than all of a box, at every pixel that the box can touch.
-bool is_hidden(uint eye, Extent extent) {
+// Boxes that touch more than `most` of the coarsest squares along x or y are not looked into.
+bool is_hidden(uint eye, Extent extent, uint most) {
     const Squares squares = squares_of(extent, 4);
-    if (any(greaterThan(squares.end - squares.first, uvec2(15)))) return false;  // half a screen
+    if (any(greaterThanEqual(squares.end - squares.first, uvec2(most)))) return false;
     const uint offset = pyramid_offset(eye, squares.level);
     float farthest = 1.0;
     for (uint y = squares.first.y; y <= squares.end.y; ++y)

@@ -36,6 +36,7 @@ struct Draw {
 };
 // Most workgroups that one list-driven dispatch starts; they loop over longer lists.
 ISORAST_CONSTANT uint MAX_LIST_GROUPS = 32768;
+ISORAST_CONSTANT uint CULL_GROUPS = 4;  // that a cull pass's workgroup selects blocks of at once
 ISORAST_CONSTANT uint MAX_LEVELS = 30;  // of the min-max pyramid: any number of blocks a side
 ISORAST_CONSTANT uint MAX_BRICKS = 64;
 ISORAST_CONSTANT uint MAX_SURFACES = 32;  // opaque surfaces in one picture

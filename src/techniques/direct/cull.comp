@@ -49,9 +49,16 @@ const uint LONG = 8192;  // quartets
 shared uint drawn_masks[CULL_GROUPS], large_masks[CULL_GROUPS];
 shared uint quartets[2], first_entry[2];  // small, large
 
-void corners_of(uvec3 block, out vec3 low, out vec3 high) {
+// So many groups, if not 0, a workgroup looks at as wholes first, and leaves most of them out. That
+// is one more step to wait for, which pays on CPUs, and on GPUs where groups are very many.
+layout(constant_id = 4) const uint SIFTED = 0;
+const bool SIFTS = SIFTED != 0;
+shared uvec2 sifted[SIFTED != 0 ? SIFTED : 1];
+shared uint sifted_total;
+
+void corners_of(uvec3 block, uvec3 blocks, out vec3 low, out vec3 high) {
     low = vec3(block * BLOCK);
-    high = min(low + float(BLOCK), vec3(grid.voxels.xyz) - 1.0);
+    high = min(low + vec3(blocks * BLOCK), vec3(grid.voxels.xyz) - 1.0);
 }
 
 #ifdef HIZ
@@ -62,13 +69,47 @@ shared uint candidates[CULL_GROUPS * GROUP_BLOCKS];  // group << 5 | place
 shared uint candidate_total;
 #endif
 
-// True if an eye may see the block. `seen`: in the last frame, by rays, or by raster proxies.
-// `look`: only if a closer look finds it in sight.
-bool is_selected(uvec3 block, bool seen, out bool large, out bool look) {
-    large = look = false;
-    if (SELECT != ALL && seen != (SELECT == SEEN || SELECT == TESTED)) return false;
+// Those of a group's active blocks that this list may hold.
+uint in_question(uvec2 group) {
+#ifdef HIZ
+    return group.y & ~seen_blocks[group.x];
+#else
+    if (SELECT == ALL) return group.y;
+    if (SELECT == SEEN) return group.y & seen_blocks[group.x];
+    return group.y & tested_blocks[group.x] & ~seen_blocks[group.x];
+#endif
+}
+
+// True if an eye may see something of the group.
+bool is_group_in_sight(uint group) {
     vec3 low, high;
-    corners_of(block, low, high);
+    corners_of(group_origin(group), uvec3(GROUP_X, GROUP_Y, GROUP_Z), low, high);
+    for (uint eye = 0; eye < EYES; ++eye) {
+        if (!in_frustum(eye, low, high)) continue;
+#ifdef HIZ
+        Extent extent;
+        if (project(eye, low, high, extent) && is_hidden(eye, extent, 4)) continue;
+#endif
+        return true;
+    }
+    return false;
+}
+
+void sift(uvec2 group) {
+    const bool tested = SELECT == ALL || SELECT == TESTED;
+    if (in_question(group) != 0 && (tested || is_group_in_sight(group.x)))
+        sifted[atomicAdd(sifted_total, 1)] = group;
+#ifdef SURFACES
+    else
+        drawn_before[group.x] = seen_blocks[group.x];
+#endif
+}
+
+// True if an eye may see the block. `look`: only if a closer look finds it in sight.
+bool is_selected(uvec3 block, out bool large, out bool look) {
+    large = look = false;
+    vec3 low, high;
+    corners_of(block, uvec3(1), low, high);
     bool selected = false;
     for (uint eye = 0; eye < EYES; ++eye) {
         Extent extent;
@@ -79,7 +120,7 @@ bool is_selected(uvec3 block, bool seen, out bool large, out bool look) {
                 any(greaterThan(abs(extent.least), vec2(GUARD)));
         if (SELECT != ALL && SELECT != TESTED && !in_frustum(eye, low, high)) continue;
 #ifdef HIZ
-        if (whole && is_hidden(eye, extent)) continue;
+        if (whole && is_hidden(eye, extent, 16)) continue;
 #endif
         selected = true;
     }
@@ -110,79 +151,91 @@ void widen(uint size, uint before, uint count) {
                   min(before + count - i * DRAW_QUARTETS, DRAW_ROW));
 }
 
-void main() {
+uvec2 group_at(uint i) { return SIFTS ? sifted[i] : active_groups[i]; }
+
+// Lists what is selected of four groups from `first` on, or as many as there are up to `end`.
+void select_from(uint first, uint end) {
     const uint thread = gl_LocalInvocationIndex;
     const uint lane = thread / GROUP_BLOCKS, place = thread % GROUP_BLOCKS;
-    for (uint first = CULL_GROUPS * gl_WorkGroupID.x; first < group_count;
-         first += CULL_GROUPS * gl_NumWorkGroups.x) {
-        if (thread < CULL_GROUPS) drawn_masks[thread] = large_masks[thread] = 0;
-        if (thread < 2) quartets[thread] = 0;
+    if (thread < CULL_GROUPS) drawn_masks[thread] = large_masks[thread] = 0;
+    if (thread < 2) quartets[thread] = 0;
 #ifdef HIZ
-        if (thread == 0) candidate_total = 0;
+    if (thread == 0) candidate_total = 0;
 #endif
-        barrier();
-        if (first + lane < group_count) {
-            const uvec2 group = active_groups[first + lane];
+    barrier();
+    if (first + lane < end) {
+        const uvec2 group = group_at(first + lane);
+        bool large, look;
+        if ((in_question(group) >> place & 1) != 0 &&
+            is_selected(group_origin(group.x) + block_in_group(place), large, look)) {
 #ifdef HIZ
-            const uint marks = seen_blocks[group.x];
-#else
-            const uint marks = SELECT == TESTED ? tested_blocks[group.x] & ~seen_blocks[group.x]
-                                                : seen_blocks[group.x];
+            if (look) candidates[atomicAdd(candidate_total, 1)] = lane << 5 | place;
 #endif
-            bool large, look;
-            if ((group.y >> place & 1) != 0 &&
-                is_selected(group_origin(group.x) + block_in_group(place),
-                            (marks >> place & 1) != 0, large, look)) {
-#ifdef HIZ
-                if (look) candidates[atomicAdd(candidate_total, 1)] = lane << 5 | place;
-#endif
-                if (!look) atomicOr(drawn_masks[lane], 1u << place);
-                if (LARGE_PARTS != 0 && large) atomicOr(large_masks[lane], 1u << place);
-            }
+            if (!look) atomicOr(drawn_masks[lane], 1u << place);
+            if (LARGE_PARTS != 0 && large) atomicOr(large_masks[lane], 1u << place);
         }
-        barrier();
+    }
+    barrier();
 #ifdef HIZ
-        // A team of threads for each candidate.
-        for (uint i = thread / TEAM; i < candidate_total; i += CULL_GROUPS * GROUP_BLOCKS / TEAM) {
-            const uint of = candidates[i] >> 5, at = candidates[i] & 31u;
-            vec3 low, high;
-            corners_of(group_origin(active_groups[first + of].x) + block_in_group(at), low, high);
-            for (uint eye = 0; eye < EYES; ++eye)
-                if (in_frustum(eye, low, high) && is_in_sight(eye, low, high, thread % TEAM))
-                    atomicOr(drawn_masks[of], 1u << at);
-        }
-        barrier();
+    // A team of threads for each candidate.
+    for (uint i = thread / TEAM; i < candidate_total; i += CULL_GROUPS * GROUP_BLOCKS / TEAM) {
+        const uint of = candidates[i] >> 5, at = candidates[i] & 31u;
+        vec3 low, high;
+        const uvec3 block = group_origin(group_at(first + of).x) + block_in_group(at);
+        corners_of(block, uvec3(1), low, high);
+        for (uint eye = 0; eye < EYES; ++eye)
+            if (in_frustum(eye, low, high) && is_in_sight(eye, low, high, thread % TEAM))
+                atomicOr(drawn_masks[of], 1u << at);
+    }
+    barrier();
 #endif
 #ifdef SURFACES
-        if (thread < CULL_GROUPS && first + thread < group_count) {
-            const uint group = active_groups[first + thread].x;
-            drawn_before[group] = seen_blocks[group] | drawn_masks[thread];
-        }
+    if (thread < CULL_GROUPS && first + thread < end) {
+        const uint group = group_at(first + thread).x;
+        drawn_before[group] = seen_blocks[group] | drawn_masks[thread];
+    }
 #endif
-        // The first threads: a quartet each. It is large if one of its blocks is.
-        uint mask = 0, size = 0, number = 0;
-        const uint of_group = thread / QUARTETS, quartet = thread % QUARTETS;
-        if (thread < CULL_GROUPS * QUARTETS) {
-            mask = quartet_mask(drawn_masks[of_group], quartet);
-            size = quartet_mask(large_masks[of_group], quartet) != 0 ? 1 : 0;
-            if (mask != 0) number = atomicAdd(quartets[size], 1);
+    // The first threads: a quartet each. It is large if one of its blocks is.
+    uint mask = 0, size = 0, number = 0;
+    const uint of_group = thread / QUARTETS, quartet = thread % QUARTETS;
+    if (thread < CULL_GROUPS * QUARTETS) {
+        mask = quartet_mask(drawn_masks[of_group], quartet);
+        size = quartet_mask(large_masks[of_group], quartet) != 0 ? 1 : 0;
+        if (mask != 0) number = atomicAdd(quartets[size], 1);
+    }
+    barrier();
+    if (thread < 2 && quartets[thread] != 0) {
+        const uint count = quartets[thread];
+        first_entry[thread] =
+            atomicAdd(draws[first_draw + thread * draws_of_list].quartets, count);
+        widen(thread, first_entry[thread], count);
+    }
+    if (thread == 0) {
+        uint blocks = 0;
+        for (uint i = 0; i < CULL_GROUPS; ++i) blocks += bitCount(drawn_masks[i]);
+        if (blocks != 0) atomicAdd(counters.blocks_drawn, blocks);
+    }
+    barrier();
+    if (mask != 0)
+        list(size, first_entry[size] + number,
+             (QUARTETS * group_at(first + of_group).x + quartet) << 4 | mask);
+    barrier();
+}
+
+void main() {
+    const uint thread = gl_LocalInvocationIndex;
+    const uint step = SIFTS ? SIFTED : CULL_GROUPS;
+    for (uint first = step * gl_WorkGroupID.x; first < group_count;
+         first += step * gl_NumWorkGroups.x) {
+        if (!SIFTS) {
+            select_from(first, group_count);
+            continue;
         }
+        if (thread == 0) sifted_total = 0;
         barrier();
-        if (thread < 2 && quartets[thread] != 0) {
-            const uint count = quartets[thread];
-            first_entry[thread] =
-                atomicAdd(draws[first_draw + thread * draws_of_list].quartets, count);
-            widen(thread, first_entry[thread], count);
-        }
-        if (thread == 0) {
-            uint blocks = 0;
-            for (uint i = 0; i < CULL_GROUPS; ++i) blocks += bitCount(drawn_masks[i]);
-            if (blocks != 0) atomicAdd(counters.blocks_drawn, blocks);
-        }
+        if (thread < SIFTED && first + thread < group_count) sift(active_groups[first + thread]);
         barrier();
-        if (mask != 0)
-            list(size, first_entry[size] + number,
-                 (QUARTETS * active_groups[first + of_group].x + quartet) << 4 | mask);
+        for (uint i = 0; i < sifted_total; i += CULL_GROUPS) select_from(i, sifted_total);
         barrier();
     }
 }

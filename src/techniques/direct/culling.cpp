@@ -31,9 +31,13 @@ constexpr uint32_t LISTS = 3;
 // of them (512^3), and as MANY (1024^3) to cast rays after each change.
 constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18, MANY = 1 << 20;
 
+// Groups of blocks that a workgroup of a cull pass looks at as wholes first: on CPUs, and on GPUs
+// from so many blocks on (2048^3).
+constexpr uint32_t SIFTED = 32, VERY_MANY = 1 << 23;
+
 // Rays that guess: how many across a block where the volume fills the picture, and after how many
-// steps each gives up. More where blocks are dear: the hardware rasterizer's.
-constexpr uint32_t RAYS = 4, RAYS_IF_DEAR = 8, STEPS = 48, STEPS_IF_DEAR = 192;
+// steps each gives up. More where blocks are many, or dear: the hardware rasterizer's.
+constexpr uint32_t RAYS = 4, RAYS_IF_DEAR = 8, STEPS = 48, STEPS_IF_MANY = 64, STEPS_IF_DEAR = 192;
 
 // Of the camera, from one frame to the next.
 struct Motion {
@@ -76,20 +80,21 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
         visible = gpu::Buffer(device, uint64_t{4} * groups, Memory::device, "visible blocks");
 
     find_active_ = gpu::Pipeline::compute(
-        device, grid.pipeline_info("find active", {Kind::buffer, Kind::buffer}, 8),
+        device, grid.pipeline_info("find active", {Kind::buffer, Kind::buffer}, 12),
         find_active_comp);
     const uint32_t blocks = grid.info().blocks.w;
     const bool hardware = sizes_ == 1, soon = !hardware && !device.is_cpu();
+    sifted_ = device.is_cpu() || blocks >= VERY_MANY ? SIFTED : 0;
     if (blocks < (soon ? WORTH_A_STEP_IF_SOON : WORTH_A_STEP)) return;
     dear_ = hardware || blocks >= MANY;
     rays_pay_ = !soon || blocks >= MANY;
     if (occlusion_->kind() == Occlusion::hiz)
         drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
+    const uint32_t steps = hardware ? STEPS_IF_DEAR : blocks >= MANY ? STEPS_IF_MANY : STEPS;
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     guess_visible_ = gpu::Pipeline::compute(
         device,
-        grid.pipeline_info("guess visible", {Kind::buffer}, 4,
-                           {/* EXACT= */ 0, filtered, hardware ? STEPS_IF_DEAR : STEPS}),
+        grid.pipeline_info("guess visible", {Kind::buffer}, 4, {/* EXACT= */ 0, filtered, steps}),
         grid.pick(guess_visible_comp, guess_visible_comp_bricked));
 }
 
@@ -107,10 +112,11 @@ const gpu::Pipeline& Culling::selection(Test test) {
     const auto code = test == Test::surfaces ? std::span<const uint32_t>(cull_surfaces)
                       : test == Test::hiz    ? std::span<const uint32_t>(cull_hiz)
                                              : std::span<const uint32_t>(cull_comp);
-    pipeline = gpu::Pipeline::compute(grid_.device(),
-                                      grid_.pipeline_info("cull", std::vector(7, Kind::buffer), 8,
-                                                          {large_parts_, eyes_, uint32_t(test)}),
-                                      code);
+    pipeline =
+        gpu::Pipeline::compute(grid_.device(),
+                               grid_.pipeline_info("cull", std::vector(7, Kind::buffer), 8,
+                                                   {large_parts_, eyes_, uint32_t(test), sifted_}),
+                               code);
     return pipeline;
 }
 
@@ -134,12 +140,12 @@ void Culling::find_active(Commands& commands, const std::vector<float>& isovalue
 void Culling::find_active(Commands& commands, uint32_t surface, float isovalue) {
     struct Push {
         float isovalue;
-        uint32_t groups_in_row;
+        uint32_t groups_in_row, groups_at_once;
     };
     const uint32_t workgroups = (grid_.info().groups.w + 3) / 4;
     const uint32_t row = std::min(workgroups, MAX_ROW);
     commands.bind(find_active_, {active_groups_[surface], counters_});
-    commands.push(Push{isovalue, row});
+    commands.push(Push{isovalue, row, sifted_ != 0 ? sifted_ : shared::CULL_GROUPS});
     commands.dispatch(row, (workgroups + row - 1) / row);
 }
 

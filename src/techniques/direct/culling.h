@@ -64,7 +64,8 @@ private:
 
     const Grid& grid_;
     uint32_t large_parts_, sizes_, draw_count_ = 0, first_draw_ = 0;
-    uint32_t eyes_ = 1;  // of this frame
+    uint32_t sifted_ = 0;  // groups that a workgroup of a cull pass looks at first
+    uint32_t eyes_ = 1;    // of this frame
     std::unique_ptr<OcclusionTest> occlusion_;
     gpu::Pipeline find_active_, guess_visible_;
     std::array<std::array<gpu::Pipeline, 5>, 2> selections_;  // of eyes, Test; when first needed

@@ -13,7 +13,8 @@ layout(local_size_x = 128) in;
 layout(set = 1, binding = 1, std430) buffer CounterBlock { Counters counters; };
 layout(push_constant) uniform Push {
     float iso;
-    uint groups_in_row;  // workgroups along x
+    uint groups_in_row;   // workgroups along x
+    uint groups_at_once;  // of a workgroup of the cull pass
 };
 
 shared uint masks[4];
@@ -32,7 +33,7 @@ void main() {
     if (place != 0 || masks[local_group] == 0) return;
     const uint slot = atomicAdd(group_count, 1);
     active_groups[slot] = uvec2(group, masks[local_group]);
-    if (slot % CULL_GROUPS == 0 && slot / CULL_GROUPS < MAX_LIST_GROUPS) atomicAdd(cull_x, 1);
+    if (slot % groups_at_once == 0 && slot / groups_at_once < MAX_LIST_GROUPS) atomicAdd(cull_x, 1);
     if (slot % TASK_GROUPS == 0) {
         const uint task = slot / TASK_GROUPS;
         if (task < TASK_ROW) atomicAdd(task_x, 1);
