@@ -43,8 +43,8 @@ constexpr uint32_t RAYS = 4, RAYS_IF_DEAR = 8, STEPS = 48, STEPS_IF_MANY = 64, S
 struct Motion {
     double degrees, distance;  // as a share of the distance to the target
 };
-// From CUT on, what the last frame saw says little; from FAST on, its holes are worth a step, and
-// where blocks are many, or the hardware rasterizer's, from ANY on.
+// From CUT on, what the last frame saw says little; from FAST on, its holes are worth a step (and
+// rays, if blocks are the hardware rasterizer's), and where blocks are many or dear, from ANY on.
 constexpr Motion CUT{15, 0.25}, FAST{2, 0.035}, ANY{0.1, 0.002};
 
 glm::dvec3 to_vec(const std::array<double, 3>& v) {
@@ -83,14 +83,14 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
         device, grid.pipeline_info("find active", {Kind::buffer, Kind::buffer}, 12),
         find_active_comp);
     const uint32_t blocks = grid.info().blocks.w;
-    const bool hardware = sizes_ == 1, soon = !hardware && !device.is_cpu();
+    const bool soon = !hardware() && !device.is_cpu();
     sifted_ = device.is_cpu() || blocks >= VERY_MANY ? SIFTED : 0;
     if (blocks < (soon ? WORTH_A_STEP_IF_SOON : WORTH_A_STEP)) return;
-    dear_ = hardware || blocks >= MANY;
+    dear_ = hardware() || blocks >= MANY;
     rays_pay_ = !soon || blocks >= MANY;
     if (occlusion_->kind() == Occlusion::hiz)
         drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
-    const uint32_t steps = hardware ? STEPS_IF_DEAR : blocks >= MANY ? STEPS_IF_MANY : STEPS;
+    const uint32_t steps = hardware() ? STEPS_IF_DEAR : blocks >= MANY ? STEPS_IF_MANY : STEPS;
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     guess_visible_ = gpu::Pipeline::compute(
         device,
@@ -161,20 +161,22 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     commands.fill(visible_[1 - seen_], 0);
     occlusion_->fit(target);
     const bool cut = has_moved(last_camera_, frame.camera, CUT);
-    const bool fast = has_moved(last_camera_, frame.camera, dear_ ? ANY : FAST);
+    const bool fast = has_moved(last_camera_, frame.camera, FAST);
+    const bool moved = fast || (dear_ && has_moved(last_camera_, frame.camera, ANY));
     if (cut) commands.fill(visible_[seen_], 0);
     last_camera_ = frame.camera;
     // Marks of drawn blocks are for all surfaces: likely ones can be drawn of a single one only.
-    has_likely_ = drawn_before_ && frame.isovalues.size() == 1 && (changed_ || fast);
+    has_likely_ = drawn_before_ && frame.isovalues.size() == 1 && (changed_ || moved);
     commands.barrier();
-    if (guess_visible_ && (cut || (changed_ && rays_pay_))) guess_visible(commands, frame);
+    if (guess_visible_ && (cut || (changed_ && rays_pay_) || (fast && hardware())))
+        guess_visible(commands, frame);
     changed_ = false;
 }
 
 void Culling::guess_visible(Commands& commands, const Frame& frame) const {
     const auto pass = commands.pass("guess visible");
     const glm::uvec3 blocks(grid_.info().blocks);
-    const uint32_t rays = sizes_ == 1 ? RAYS_IF_DEAR : RAYS;
+    const uint32_t rays = hardware() ? RAYS_IF_DEAR : RAYS;
     const uint32_t across = rays * std::max({blocks.x, blocks.y, blocks.z});
     const uint32_t shorter = std::min(frame.size.width, frame.size.height);
     const uint32_t side = std::clamp(shorter / across, 2u, 8u);

@@ -23,8 +23,9 @@ public:
 
     // Once a frame, before select(). The blocks marked visible in the last frame become the seen
     // ones, unless the camera is another (a cut). After that, or with another isovalue or time
-    // step, in large volumes, rays add what they hit. The shading pass marks this frame's visible
-    // blocks in target.visible_blocks.
+    // step, in large volumes, rays add what they hit; for the hardware rasterizer also when the
+    // camera turns fast. The shading pass marks this frame's visible blocks in
+    // target.visible_blocks.
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
     enum class Select : uint32_t { all, seen, likely, unseen };
     // After such a change, and when the camera moves, seen blocks leave holes, and through a hole
@@ -59,6 +60,7 @@ private:
     // What cull.comp goes by; the first three are its SELECT.
     enum class Test : uint32_t { none, seen, tested, hiz, surfaces };
     const gpu::Pipeline& selection(Test test);
+    bool hardware() const { return sizes_ == 1; }  // the rasterizer
     // The blocks drawn before select(unseen), of active groups.
     const gpu::Buffer& drawn() const { return has_likely_ ? drawn_before_ : visible_[seen_]; }
 
