@@ -25,6 +25,8 @@ const uint SELECT = 3;
 #else
 layout(constant_id = 3) const uint SELECT = ALL;
 #endif
+// Otherwise, where the blocks lie has been asked before, or does not matter.
+const bool IN_FRUSTUM = SELECT != ALL && SELECT != TESTED;
 
 layout(set = 1, binding = 1, std430) buffer Draws { Draw draws[]; };
 // Quartets of small blocks from the start on, of large ones from the end backwards.
@@ -56,8 +58,9 @@ const bool SIFTS = SIFTED != 0;
 shared uvec2 sifted[SIFTED != 0 ? SIFTED : 1];
 shared uint sifted_total;
 
-void corners_of(uvec3 block, uvec3 blocks, out vec3 low, out vec3 high) {
-    low = vec3(block * BLOCK);
+// Of so many blocks from the first one on.
+void corners_of(uvec3 first, uvec3 blocks, out vec3 low, out vec3 high) {
+    low = vec3(first * BLOCK);
     high = min(low + vec3(blocks * BLOCK), vec3(grid.voxels.xyz) - 1.0);
 }
 
@@ -96,8 +99,7 @@ bool is_group_in_sight(uint group) {
 }
 
 void sift(uvec2 group) {
-    const bool tested = SELECT == ALL || SELECT == TESTED;
-    if (in_question(group) != 0 && (tested || is_group_in_sight(group.x)))
+    if (in_question(group) != 0 && (!IN_FRUSTUM || is_group_in_sight(group.x)))
         sifted[atomicAdd(sifted_total, 1)] = group;
 #ifdef SURFACES
     else
@@ -118,7 +120,7 @@ bool is_selected(uvec3 block, out bool large, out bool look) {
         large = large || !whole ||
                 any(greaterThan(extent.greatest - extent.least, vec2(SMALL_SIDE))) ||
                 any(greaterThan(abs(extent.least), vec2(GUARD)));
-        if (SELECT != ALL && SELECT != TESTED && !in_frustum(eye, low, high)) continue;
+        if (IN_FRUSTUM && !in_frustum(eye, low, high)) continue;
 #ifdef HIZ
         if (whole && is_hidden(eye, extent, 16)) continue;
 #endif

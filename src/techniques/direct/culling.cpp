@@ -31,9 +31,9 @@ constexpr uint32_t LISTS = 3;
 // of them (512^3), and as MANY (1024^3) to cast rays after each change.
 constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18, MANY = 1 << 20;
 
-// Groups of blocks that a workgroup of a cull pass looks at as wholes first: on CPUs, and on GPUs
-// from so many blocks on (2048^3).
-constexpr uint32_t SIFTED = 32, VERY_MANY = 1 << 23;
+// Groups of blocks that a workgroup of a cull pass looks at as wholes first; from so many blocks
+// on, on CPUs and on GPUs (2048^3).
+constexpr uint32_t SIFTED = 32, WORTH_SIFTING_ON_CPU = 1 << 8, WORTH_SIFTING = 1 << 23;
 
 // Rays that guess: how many across a block where the volume fills the picture, and after how many
 // steps each gives up. More where blocks are many, or dear: the hardware rasterizer's.
@@ -84,7 +84,7 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
         find_active_comp);
     const uint32_t blocks = grid.info().blocks.w;
     const bool soon = !hardware() && !device.is_cpu();
-    sifted_ = device.is_cpu() || blocks >= VERY_MANY ? SIFTED : 0;
+    sifted_ = blocks >= (device.is_cpu() ? WORTH_SIFTING_ON_CPU : WORTH_SIFTING) ? SIFTED : 0;
     if (blocks < (soon ? WORTH_A_STEP_IF_SOON : WORTH_A_STEP)) return;
     dear_ = hardware() || blocks >= MANY;
     rays_pay_ = !soon || blocks >= MANY;
