@@ -72,8 +72,24 @@ shared uint candidates[CULL_GROUPS * GROUP_BLOCKS];  // group << 5 | place
 shared uint candidate_total;
 #endif
 
+#ifdef SURFACES
+// What comes into sight lies beside what was. The rest is left to the last list.
+bool is_near_seen(uint group) {
+    const uint last = grid.groups.w - 1;
+    const uvec3 steps = uvec3(1, grid.groups.x, grid.groups.x * grid.groups.y);
+    uint seen = seen_blocks[group];
+    for (int axis = 0; axis < 3; ++axis)
+        seen |= seen_blocks[max(group, steps[axis]) - steps[axis]] |
+                seen_blocks[min(group + steps[axis], last)];
+    return seen != 0;
+}
+#endif
+
 // Those of a group's active blocks that this list may hold.
 uint in_question(uvec2 group) {
+#ifdef SURFACES
+    if (!is_near_seen(group.x)) return 0;
+#endif
 #ifdef HIZ
     return group.y & ~seen_blocks[group.x];
 #else
