@@ -76,10 +76,9 @@ private:
         const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
                                    Kind::image};
         const bool cpu = grid_.device().is_cpu();
-        const bool many = grid_.info().blocks.w >= MANY_BLOCKS;  // then fewer threads, but of more
-        const uint32_t threads = cpu ? std::max(8u, grid_.device().info().subgroup_size)
-                                 : large || !many ? 128
-                                                  : 96;
+        const uint32_t threads = cpu     ? std::max(8u, grid_.device().info().subgroup_size)
+                                 : large ? 128
+                                         : 96;
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
             grid_.pipeline_info("rasterize", bindings, sizeof(Push),

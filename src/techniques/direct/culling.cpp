@@ -28,8 +28,8 @@ constexpr uint32_t LISTS = 3;
 
 // With fewer blocks than this (a volume of 256^3), drawing in more steps costs more than drawing
 // all blocks at once. A GPU's compute rasterizer draws 20000 while the last ray is waited for: more
-// of them (512^3), and MANY_BLOCKS to cast rays after each change.
-constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18;
+// of them (512^3), and as MANY (1024^3) to cast rays after each change.
+constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18, MANY = 1 << 20;
 
 // Groups of blocks that a workgroup of a cull pass looks at as wholes first; from so many blocks
 // on, on CPUs and on GPUs (2048^3).
@@ -86,13 +86,11 @@ Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uin
     const bool soon = !hardware() && !device.is_cpu();
     sifted_ = blocks >= (device.is_cpu() ? WORTH_SIFTING_ON_CPU : WORTH_SIFTING) ? SIFTED : 0;
     if (blocks < (soon ? WORTH_A_STEP_IF_SOON : WORTH_A_STEP)) return;
-    dear_ = hardware() || blocks >= MANY_BLOCKS;
-    rays_pay_ = !soon || blocks >= MANY_BLOCKS;
+    dear_ = hardware() || blocks >= MANY;
+    rays_pay_ = !soon || blocks >= MANY;
     if (occlusion_->kind() == Occlusion::hiz)
         drawn_before_ = gpu::Buffer(device, visible_[0].bytes(), Memory::device, "visible blocks");
-    const uint32_t steps = hardware()              ? STEPS_IF_DEAR
-                           : blocks >= MANY_BLOCKS ? STEPS_IF_MANY
-                                                   : STEPS;
+    const uint32_t steps = hardware() ? STEPS_IF_DEAR : blocks >= MANY ? STEPS_IF_MANY : STEPS;
     const uint32_t filtered = grid.can_filter() ? 1 : 0;
     guess_visible_ = gpu::Pipeline::compute(
         device,

@@ -13,9 +13,6 @@
 
 namespace isorast {
 
-// From so many on (a volume of 1024^3), blocks keep a GPU busy whatever one alone takes.
-constexpr uint32_t MANY_BLOCKS = 1 << 20;
-
 class Culling {
 public:
     // `large_parts`: see BlockRasterizer.
