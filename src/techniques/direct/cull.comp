@@ -73,7 +73,8 @@ shared uint candidate_total;
 #endif
 
 #ifdef SURFACES
-// What comes into sight lies beside what was. The rest is left to the last list.
+// What comes into sight lies beside what was; the rest is left to the last list. Beside the
+// volume's sides other groups are asked, which does no harm.
 bool is_near_seen(uint group) {
     const uint last = grid.groups.w - 1;
     const uvec3 steps = uvec3(1, grid.groups.x, grid.groups.x * grid.groups.y);
