@@ -20,24 +20,24 @@ struct Extent {
     float nearest;
 };
 
-// A point. Rounding must not make the extent too small: it is a 64th of a pixel wider and 1e-5
-// nearer (rasterizers round positions to a 256th). False before the near plane.
-bool project(uint eye, vec3 point, out Extent extent) {
-    const vec4 clip = frame.eyes[eye].clip_from_voxel * vec4(point, 1.0);
-    const vec2 pixel = (0.5 + 0.5 * clip.xy / clip.w) * vec2(frame.size.xy);
-    extent = Extent(pixel - 1.0 / 64.0, pixel + 1.0 / 64.0, clip.z / clip.w * 1.00001 + 1e-7);
-    return clip.w > 0.0 && clip.z < clip.w;
-}
-
-// False if a part of the box lies before the near plane: then it can touch anything.
+// False if a part of the box may lie before the near plane: then it can touch anything. At a place
+// d from the middle m, x / w of clip space differs from the middle's by (dx - mx / mw * dw) /
+// (mw + dw). Rounding must not make the extent too small: it is a 64th of a pixel wider and 1e-5
+// nearer (rasterizers round positions to a 256th).
 bool project(uint eye, vec3 low, vec3 high, out Extent extent) {
-    extent = Extent(vec2(1e9), vec2(-1e9), 0.0);
-    for (uint c = 0; c < 8; ++c) {
-        Extent corner;
-        if (!project(eye, mix(low, high, vec3(c & 1, c >> 1 & 1, c >> 2)), corner)) return false;
-        extent.least = min(extent.least, corner.least);
-        extent.greatest = max(extent.greatest, corner.greatest);
-        extent.nearest = max(extent.nearest, corner.nearest);
+    const mat4 m = frame.eyes[eye].clip_from_voxel;
+    const vec3 half_sides = 0.5 * (high - low);
+    const vec4 clip = m * vec4(low + half_sides, 1.0);
+    const vec3 middle = clip.xyz / clip.w;
+    vec3 reach = vec3(0.0);
+    float least_w = clip.w;
+    for (int axis = 0; axis < 3; ++axis) {
+        reach += half_sides[axis] * abs(m[axis].xyz - middle * m[axis].w);
+        least_w -= half_sides[axis] * abs(m[axis].w);
     }
-    return true;
+    reach /= least_w;
+    const vec2 half_size = 0.5 * vec2(frame.size.xy);
+    const vec2 pixel = (middle.xy + 1.0) * half_size, radius = reach.xy * half_size + 1.0 / 64.0;
+    extent = Extent(pixel - radius, pixel + radius, (middle.z + reach.z) * 1.00001 + 1e-7);
+    return least_w > 0.0 && middle.z + reach.z < 1.0;
 }

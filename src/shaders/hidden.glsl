@@ -12,9 +12,12 @@ Squares squares_of(Extent extent, uint most) {
     const vec2 last = vec2(frame.size.xy) - 1.0;
     const uvec2 low_pixel = uvec2(clamp(floor(extent.least), vec2(0.0), last));
     const uvec2 high_pixel = uvec2(clamp(floor(extent.greatest), vec2(0.0), last));
-    uint level = 1;
-    while (level < PYRAMID_LEVELS &&
-           any(greaterThanEqual((high_pixel >> level) - (low_pixel >> level), uvec2(most))))
+    // At a level where they are `most` or fewer by their distance, or at the next one.
+    const uvec2 distance = high_pixel - low_pixel;
+    uint level = uint(clamp(findMSB(max(distance.x, distance.y) / most) + 1, 1,
+                            int(PYRAMID_LEVELS)));
+    if (level < PYRAMID_LEVELS &&
+        any(greaterThanEqual((high_pixel >> level) - (low_pixel >> level), uvec2(most))))
         ++level;
     return Squares(level, low_pixel >> level, high_pixel >> level);
 }
@@ -46,5 +49,18 @@ bool is_hidden(uint eye, Extent extent, uint most) {
                 const uvec2 square = uvec2(min(x + n, squares.end.x), y);
                 farthest = min(farthest, depth_of_square(eye, squares.level, offset, square));
             }
+    return farthest > extent.nearest;
+}
+
+// The same for what is small: at most 2x2 squares, all on their way together.
+bool is_hidden(uint eye, Extent extent) {
+    const Squares squares = squares_of(extent, 2);
+    if (any(greaterThan(squares.end - squares.first, uvec2(1)))) return false;
+    const uint offset = pyramid_offset(eye, squares.level);
+    float farthest = 1.0;
+    [[unroll]] for (uint n = 0; n < 4; ++n) {
+        const uvec2 square = min(squares.first + uvec2(n & 1, n >> 1), squares.end);
+        farthest = min(farthest, depth_of_square(eye, squares.level, offset, square));
+    }
     return farthest > extent.nearest;
 }

@@ -42,8 +42,8 @@ public:
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT},
                          "a test");
         read_ = gpu::Buffer(device, bytes_, Memory::host, "a test");
-        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
-                                   Kind::image};
+        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer,
+                                   Kind::image,  Kind::image,  Kind::buffer};
         const std::array<std::span<const uint32_t>, 2> code{
             sums ? std::span<const uint32_t>(rasterize_subgroups_counting)
                  : std::span<const uint32_t>(rasterize_counting),
@@ -72,7 +72,7 @@ public:
             for (const auto size : {Culling::Size::small, Culling::Size::large}) {
                 const uint32_t draw = culling_.first_draw(size);
                 commands.bind(pipelines_[size_t(size)], {culling_.draws(), culling_.drawn_blocks(),
-                                                         table_, counts_, counts_});
+                                                         table_, counts_, counts_, table_});
                 commands.push(std::array<uint32_t, 3>{0, 0, draw});
                 commands.dispatch_indirect(culling_.draws(), draw * sizeof(shared::Draw));
             }

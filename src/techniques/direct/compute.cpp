@@ -49,9 +49,11 @@ public:
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override {
         for (const Size size : {Size::large, Size::small}) {
-            commands.bind(pipeline(frame, size),
+            const gpu::Buffer* pyramid = size == Size::small ? culling.pyramid() : nullptr;
+            commands.bind(pipeline(frame, size, pyramid != nullptr),
                           {culling.draws(), culling.drawn_blocks(), triangle_table_,
-                           gpu::Binding(target.depth.bits_view()), target.surfaces});
+                           gpu::Binding(target.depth.bits_view()), target.surfaces,
+                           pyramid ? *pyramid : triangle_table_});
             const uint32_t first = culling.first_draw(size);
             for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
                 commands.push(Push{draw, surface, first});
@@ -67,14 +69,15 @@ public:
     uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
 
 private:
-    const gpu::Pipeline& pipeline(const Frame& frame, Size size) {
+    const gpu::Pipeline& pipeline(const Frame& frame, Size size, bool cells_tested) {
         const bool numbered = frame.isovalues.size() > 1, clipped = !frame.clips.empty();
         const bool large = size == Size::large;
         const uint32_t eyes = frame.eyes();
-        gpu::Pipeline& pipeline = pipelines_[numbered + 2 * clipped + 4 * large + 8 * (eyes - 1)];
+        gpu::Pipeline& pipeline =
+            pipelines_[numbered + 2 * clipped + 4 * large + 8 * (eyes - 1) + 16 * cells_tested];
         if (pipeline) return pipeline;
-        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
-                                   Kind::image};
+        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer,
+                                   Kind::image,  Kind::image,  Kind::buffer};
         const bool cpu = grid_.device().is_cpu();
         const uint32_t threads = cpu     ? std::max(8u, grid_.device().info().subgroup_size)
                                  : large ? 128
@@ -82,7 +85,7 @@ private:
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
             grid_.pipeline_info("rasterize", bindings, sizeof(Push),
-                                {clipped, !cpu, threads, large_parts(), eyes}),
+                                {clipped, !cpu, threads, large_parts(), eyes, cells_tested}),
             code(numbered, large));
         return pipeline;
     }
@@ -103,7 +106,7 @@ private:
     const Grid& grid_;
     gpu::Buffer triangle_table_;
     gpu::Pipeline clear_;
-    std::array<gpu::Pipeline, 16> pipelines_;  // made when first needed
+    std::array<gpu::Pipeline, 32> pipelines_;  // made when first needed
 };
 
 }  // namespace

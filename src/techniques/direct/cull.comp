@@ -203,7 +203,8 @@ void select_from(uint first, uint end) {
         const uvec3 block = group_origin(group_at(first + of).x) + block_in_group(at);
         corners_of(block, uvec3(1), low, high);
         for (uint eye = 0; eye < EYES; ++eye)
-            if (in_frustum(eye, low, high) && is_in_sight(eye, low, high, thread % TEAM))
+            if ((EYES == 1 || in_frustum(eye, low, high)) &&  // of one, asked before
+                is_in_sight(eye, low, high, thread % TEAM))
                 atomicOr(drawn_masks[of], 1u << at);
     }
     barrier();

@@ -193,6 +193,7 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
     };
     const bool likely = which == Select::likely, unseen = which == Select::unseen;
     const bool hiz = occlusion_->kind() == Occlusion::hiz;
+    pyramid_ = unseen && hiz ? &occlusion_->result() : nullptr;
     // For each Select; raster proxies have marked unseen blocks before.
     const std::array tests{Test::none, Test::seen, Test::surfaces, hiz ? Test::hiz : Test::tested};
     first_draw_ = (LISTS * surface + (likely ? 1 : unseen ? 2 : 0)) * sizes_ * draw_count_;

@@ -51,6 +51,9 @@ public:
     const gpu::Buffer& draws() const { return draws_; }
     uint32_t draw_count() const { return draw_count_; }
     uint32_t first_draw(Size size) const { return first_draw_ + uint32_t(size) * draw_count_; }
+    // The depth pyramid, if the last select() tested blocks by it: what it hides of a block's cells
+    // need not be drawn.
+    const gpu::Buffer* pyramid() const { return pyramid_; }
     const gpu::Buffer& counters() const { return counters_; }
     uint64_t gpu_bytes() const;
 
@@ -76,7 +79,8 @@ private:
     std::array<gpu::Buffer, 2> visible_;  // a bit a block: last frame's and this frame's, in turn
     uint32_t seen_ = 0;                   // which of the two is last frame's
     gpu::Buffer drawn_before_;            // the seen blocks and the likely ones
-    bool changed_ = false;                // the surface, since the last frame
+    const gpu::Buffer* pyramid_ = nullptr;
+    bool changed_ = false;  // the surface, since the last frame
     bool has_likely_ = false;
     bool dear_ = false;                  // blocks, compared with a look at the depth
     bool rays_pay_ = false;              // after another isovalue or time step too

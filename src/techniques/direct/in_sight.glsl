@@ -67,12 +67,15 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
         enter[axis].x += dot(abs(enter[axis].yz), half_square);
         leave[axis].x -= dot(abs(leave[axis].yz), half_square);
     }
-    const uint total = size.x * size.y;
-    for (uint first = thread; first < total; first += AT_ONCE * TEAM) {
+    // Each TEAM-th of them, row by row; past the last row, one of it again.
+    uvec2 i = uvec2(thread % size.x, thread / size.x);
+    const uvec2 step = uvec2(TEAM % size.x, TEAM / size.x);
+    while (i.y < size.y) {
         bool in_sight = false;
         [[unroll]] for (uint n = 0; n < AT_ONCE; ++n) {
-            const uint i = min(first + n * TEAM, total - 1);
-            const uvec2 square = squares.first + uvec2(i % size.x, i / size.x);
+            const uvec2 square = squares.first + uvec2(i.x, min(i.y, size.y - 1));
+            i += step;
+            if (i.x >= size.x) i += uvec2(-size.x, 1);
             const float drawn = depth_of_square(eye, squares.level, offset, square);
             const vec3 at = vec3(1.0, vec2(2 * square + 1) * half_square - 1.0);
             const float entered =

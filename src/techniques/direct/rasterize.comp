@@ -20,6 +20,7 @@
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
+#include "shaders/frustum.glsl"
 #include "techniques/direct/list.glsl"
 #include "techniques/direct/drawn.glsl"
 
@@ -38,6 +39,10 @@ layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 // have it, or through those before rounding, as lavapipe has it.
 layout(constant_id = 2) const bool SNAPPED = false;
 layout(constant_id = 5) const uint EYES = 1;
+// By the depth pyramid: of a block that no pixel sees in the end, though its box sticks out, most
+// cells are hidden.
+layout(constant_id = 6) const bool CELLS_TESTED = false;
+layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
 // Workgroups that share a block, a slab each.
 #ifdef LARGE
 layout(constant_id = 4) const uint PARTS = 1;
@@ -62,6 +67,7 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 #endif
 }
 
+#include "shaders/hidden.glsl"
 #include "techniques/direct/triangle.glsl"
 
 // A GPU may have no more than 48 KiB of shared memory a multiprocessor for all workgroups on it,
@@ -158,11 +164,22 @@ void list_rows(Slab slab, ivec3 left) {
 
 bool rows_fit() { return max(row_totals & 0xffffu, row_totals >> 16) <= MAX_LISTED; }
 
-void list_triangles() {
+// True if no eye can see anything of a cell.
+bool is_cell_hidden(uvec3 cell) {
+    for (uint eye = 0; eye < EYES; ++eye) {
+        Extent extent;
+        if (!project(eye, vec3(cell), vec3(cell + 1), extent) || !is_hidden(eye, extent))
+            return false;
+    }
+    return true;
+}
+
+void list_triangles(uvec3 first_cell) {
     const uint cell_total = rows_fit() ? row_totals >> 16 : 0;
     for (uint i = gl_LocalInvocationIndex; i < cell_total; i += THREADS) {
-        const uint cell = vertex_depths[i];
-        const uint entry = table_entry(cell_row(cell >> 5), cell & 31u);
+        const uint cell = vertex_depths[i], row = cell >> 5, x = cell & 31u;
+        if (CELLS_TESTED && is_cell_hidden(first_cell + uvec3(x, row % 9, row / 9))) continue;
+        const uint entry = table_entry(cell_row(row), x);
         const uint count = triangle_count(entry), first = reserve_triangles(count);
         if (first + count <= MAX_TRIANGLES) list_triangles_of(cell, entry, count, first);
     }
@@ -256,7 +273,7 @@ Vertex vertex_of(Listed triangle, uint corner, ivec2 from) {
 void rasterize(uint eye, uvec3 first, float iso) {
     const uint total = triangle_total;
     const ivec2 from = origin;
-    project_vertices(eye, first, iso);
+    if (total != 0) project_vertices(eye, first, iso);
     barrier();
     for (uint i = gl_LocalInvocationIndex; i < total; i += THREADS) {
         const Listed triangle = listed(i);
@@ -279,7 +296,7 @@ void draw_block(uint part, uvec3 first, float iso) {
         barrier();
         list_rows(slab, left);
         barrier();
-        list_triangles();
+        list_triangles(first);
         barrier();
         const bool all = fits();
         for (uint eye = 0; eye < EYES && all; ++eye) {
