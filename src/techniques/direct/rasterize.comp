@@ -39,7 +39,7 @@ layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 // have it, or through those before rounding, as lavapipe has it.
 layout(constant_id = 2) const bool SNAPPED = false;
 layout(constant_id = 5) const uint EYES = 1;
-// By the depth pyramid: of a block that no pixel sees in the end, though its box sticks out, most
+// By the depth pyramid: of a block that no pixel sees in the end, though its box sticks out, many
 // cells are hidden.
 layout(constant_id = 6) const bool CELLS_TESTED = false;
 layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
