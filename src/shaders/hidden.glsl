@@ -12,10 +12,9 @@ Squares squares_of(Extent extent, uint most) {
     const vec2 last = vec2(frame.size.xy) - 1.0;
     const uvec2 low_pixel = uvec2(clamp(floor(extent.least), vec2(0.0), last));
     const uvec2 high_pixel = uvec2(clamp(floor(extent.greatest), vec2(0.0), last));
-    // At a level where they are `most` or fewer by their distance, or at the next one.
-    const uvec2 distance = high_pixel - low_pixel;
-    uint level = uint(clamp(findMSB(max(distance.x, distance.y) / most) + 1, 1,
-                            int(PYRAMID_LEVELS)));
+    // At a level where so many would do if the extent began with a square, or at the next one.
+    const uvec2 sides = high_pixel - low_pixel;
+    uint level = uint(clamp(findMSB(max(sides.x, sides.y) / most) + 1, 1, int(PYRAMID_LEVELS)));
     if (level < PYRAMID_LEVELS &&
         any(greaterThanEqual((high_pixel >> level) - (low_pixel >> level), uvec2(most))))
         ++level;
@@ -53,7 +52,7 @@ bool is_hidden(uint eye, Extent extent, uint most) {
 }
 
 // The same for what is small: at most 2x2 squares, all on their way together.
-bool is_hidden(uint eye, Extent extent) {
+bool is_small_hidden(uint eye, Extent extent) {
     const Squares squares = squares_of(extent, 2);
     if (any(greaterThan(squares.end - squares.first, uvec2(1)))) return false;
     const uint offset = pyramid_offset(eye, squares.level);

@@ -53,7 +53,7 @@ public:
             commands.bind(pipeline(frame, size, pyramid != nullptr),
                           {culling.draws(), culling.drawn_blocks(), triangle_table_,
                            gpu::Binding(target.depth.bits_view()), target.surfaces,
-                           pyramid ? *pyramid : triangle_table_});
+                           pyramid ? *pyramid : triangle_table_ /* not read */});
             const uint32_t first = culling.first_draw(size);
             for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
                 commands.push(Push{draw, surface, first});

@@ -69,12 +69,12 @@ bool is_in_sight(uint eye, vec3 low, vec3 high, uint thread) {
     }
     // Each TEAM-th of them, row by row; past the last row, one of it again.
     uvec2 i = uvec2(thread % size.x, thread / size.x);
-    const uvec2 step = uvec2(TEAM % size.x, TEAM / size.x);
+    const uvec2 stride = uvec2(TEAM % size.x, TEAM / size.x);
     while (i.y < size.y) {
         bool in_sight = false;
         [[unroll]] for (uint n = 0; n < AT_ONCE; ++n) {
             const uvec2 square = squares.first + uvec2(i.x, min(i.y, size.y - 1));
-            i += step;
+            i += stride;
             if (i.x >= size.x) i += uvec2(-size.x, 1);
             const float drawn = depth_of_square(eye, squares.level, offset, square);
             const vec3 at = vec3(1.0, vec2(2 * square + 1) * half_square - 1.0);

@@ -43,6 +43,7 @@ layout(constant_id = 5) const uint EYES = 1;
 // cells are hidden.
 layout(constant_id = 6) const bool CELLS_TESTED = false;
 layout(set = 1, binding = 5, std430) readonly buffer Pyramid { float pyramid[]; };
+#include "shaders/hidden.glsl"
 // Workgroups that share a block, a slab each.
 #ifdef LARGE
 layout(constant_id = 4) const uint PARTS = 1;
@@ -67,7 +68,6 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 #endif
 }
 
-#include "shaders/hidden.glsl"
 #include "techniques/direct/triangle.glsl"
 
 // A GPU may have no more than 48 KiB of shared memory a multiprocessor for all workgroups on it,
@@ -168,7 +168,7 @@ bool rows_fit() { return max(row_totals & 0xffffu, row_totals >> 16) <= MAX_LIST
 bool is_cell_hidden(uvec3 cell) {
     for (uint eye = 0; eye < EYES; ++eye) {
         Extent extent;
-        if (!project(eye, vec3(cell), vec3(cell + 1), extent) || !is_hidden(eye, extent))
+        if (!project(eye, vec3(cell), vec3(cell + 1), extent) || !is_small_hidden(eye, extent))
             return false;
     }
     return true;
