@@ -30,7 +30,7 @@ public:
     // a large block, as on GPUs; else few threads and one, as on CPUs.
     Counting(const gpu::Device& device, const Volume& volume, Size size, bool sums)
         : grid_(device, series_of({&volume, 1}), 0, 0),
-          culling_(grid_, make_depth_pyramid(grid_), large_parts(sums)),
+          culling_(grid_, make_depth_pyramid(grid_), workgroups(sums)),
           placement_{volume.affine, volume.dims},
           bytes_(uint64_t{4} * size.width * size.height),
           table_(upload_triangle_table(device)) {
@@ -53,7 +53,8 @@ public:
                 device,
                 grid_.pipeline_info("counting", bindings, 12,
                                     {/* CLIPPED= */ 0, SNAPPED, threads(sums, Culling::Size(i)),
-                                     large_parts(sums)}),
+                                     workgroups(sums).for_large, /* EYES= */ 1,
+                                     /* CELLS_TESTED= */ 0, workgroups(sums).most}),
                 code[i]);
         gpu::run_once(device,
                       [&](gpu::Commands& commands) { commands.discard_to_general(counts_); });
@@ -70,11 +71,14 @@ public:
             commands.barrier();
             culling_.select(commands, 0, Culling::Select::all);
             for (const auto size : {Culling::Size::small, Culling::Size::large}) {
-                const uint32_t draw = culling_.first_draw(size);
+                const uint32_t first = culling_.first_draw(size);
                 commands.bind(pipelines_[size_t(size)], {culling_.draws(), culling_.drawn_blocks(),
                                                          table_, counts_, counts_, table_});
-                commands.push(std::array<uint32_t, 3>{0, 0, draw});
-                commands.dispatch_indirect(culling_.draws(), draw * sizeof(shared::Draw));
+                for (uint32_t draw = 0; draw < culling_.draw_count(); ++draw) {
+                    commands.push(std::array<uint32_t, 3>{culling_.first_entry(draw), 0, first});
+                    commands.dispatch_indirect(culling_.draws(),
+                                               (first + draw) * sizeof(shared::Draw));
+                }
             }
             commands.barrier();
             commands.copy_to_buffer(counts_, read_);
@@ -83,7 +87,10 @@ public:
     }
 
 private:
-    static uint32_t large_parts(bool sums) { return sums ? 8 : 1; }
+    // So few that these small volumes need a second draw, and workgroups a second quartet.
+    static Workgroups workgroups(bool sums) {
+        return sums ? Workgroups{8, 5, 0} : Workgroups{1, ~0u, 3};
+    }
     static uint32_t threads(bool sums, Culling::Size size) {
         return !sums ? 8 : size == Culling::Size::large ? 128 : 96;
     }

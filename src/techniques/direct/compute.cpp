@@ -26,7 +26,7 @@ using gpu::Kind;
 using Size = Culling::Size;
 
 struct Push {
-    uint32_t draw, surface, first_draw;
+    uint32_t first_entry, surface, first_draw;
 };
 
 class ComputeRasterizer final : public BlockRasterizer {
@@ -55,16 +55,19 @@ public:
                            gpu::Binding(target.depth.bits_view()), target.surfaces,
                            pyramid ? *pyramid : triangle_table_ /* not read */});
             const uint32_t first = culling.first_draw(size);
-            for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
-                commands.push(Push{draw, surface, first});
+            for (uint32_t draw = culling.draw_count(); draw-- > 0;) {
+                commands.push(Push{culling.first_entry(draw), surface, first});
                 commands.dispatch_indirect(culling.draws(), (first + draw) * sizeof(shared::Draw));
             }
         }
         commands.barrier();
     }
 
-    // Large blocks are few, and have many pixels. CPU drivers have few threads.
-    uint32_t large_parts() const override { return grid_.device().is_cpu() ? 1 : 8; }
+    // Large blocks are few, and have many pixels. A CPU driver shares workgroups out in as many
+    // runs as it has threads: blocks from all over the list in each, so that none has more to do.
+    Workgroups workgroups() const override {
+        return grid_.device().is_cpu() ? Workgroups{1, ~0u, 256} : Workgroups{8, 3072, 0};
+    }
 
     uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
 
@@ -82,10 +85,12 @@ private:
         const uint32_t threads = cpu     ? std::max(8u, grid_.device().info().subgroup_size)
                                  : large ? 128
                                          : 96;
+        const Workgroups share = workgroups();
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
-            grid_.pipeline_info("rasterize", bindings, sizeof(Push),
-                                {clipped, !cpu, threads, large_parts(), eyes, cells_tested}),
+            grid_.pipeline_info(
+                "rasterize", bindings, sizeof(Push),
+                {clipped, !cpu, threads, share.for_large, eyes, cells_tested, share.most}),
             code(numbered, large));
         return pipeline;
     }

@@ -16,8 +16,10 @@
 
 layout(local_size_x = CULL_GROUPS * GROUP_BLOCKS) in;
 
-// Workgroups that share a large block; 0: large blocks have no list of their own.
-layout(constant_id = 1) const uint LARGE_PARTS = 0;
+// As Workgroups in workgroups.h.
+layout(constant_id = 1) const uint FOR_LARGE = 0;
+layout(constant_id = 5) const uint SPREAD = DRAW_QUARTETS;
+layout(constant_id = 6) const uint MOST = 0;
 layout(constant_id = 2) const uint EYES = 1;
 const uint ALL = 0, SEEN = 1, TESTED = 2;
 #ifdef HIZ
@@ -45,8 +47,6 @@ layout(push_constant) uniform Push {
     uint first_draw;  // of the list of small blocks; that of large ones follows
     uint draws_of_list;
 };
-
-const uint LONG = 8192;  // quartets
 
 shared uint drawn_masks[CULL_GROUPS], large_masks[CULL_GROUPS];
 shared uint quartets[2], first_entry[2];  // small, large
@@ -149,25 +149,27 @@ bool is_selected(uvec3 block, out bool large, out bool look) {
     return selected;
 }
 
+// Which of its list's draws an entry belongs to, and the first entry of a draw.
+uint draw_of(uint i) { return i < SPREAD ? 0 : 1 + (i - SPREAD) / DRAW_QUARTETS; }
+uint first_of(uint draw) { return draw == 0 ? 0 : SPREAD + (draw - 1) * DRAW_QUARTETS; }
+
 // Puts an entry into a list, and into the arguments of its draw.
 void list(uint size, uint i, uint entry) {
     drawn_quartets[size == 0 ? i : drawn_quartets.length() - 1 - i] = entry;
-    const uint draw = first_draw + size * draws_of_list + i / DRAW_QUARTETS;
-    const uint place = i % DRAW_QUARTETS;
-    if (place % DRAW_ROW == 0) atomicMax(draws[draw].y, place / DRAW_ROW + 1);
-    // A workgroup for each block of a quartet, so that small volumes fill the device; in long lists
-    // one for all, as half of those would find nothing to do.
-    const uint parts = size == 0 ? 1 : LARGE_PARTS;
-    if (place == 0) atomicAdd(draws[draw].z, 4 * parts);
-    if (place == LONG && LARGE_PARTS != 0) atomicAdd(draws[draw].z, -3 * parts);
+    const uint nth = draw_of(i), place = i - first_of(nth);
+    const uint draw = first_draw + size * draws_of_list + nth;
+    if (place == 0 || (MOST == 0 && place % DRAW_ROW == 0))
+        atomicMax(draws[draw].y, place / DRAW_ROW + 1);
+    const uint of_quartet = FOR_LARGE == 0 || (MOST == 0 && nth == 0) ? 4 : 1;
+    if (place == 0) draws[draw].z = of_quartet * (size == 0 ? 1 : FOR_LARGE);
 }
 
-// Widens draws of a list that has become `quartets` long: the first row of each is full, or ends
-// with the list.
-void widen(uint size, uint before, uint count) {
-    for (uint i = before / DRAW_QUARTETS; i * DRAW_QUARTETS < before + count; ++i)
-        atomicMax(draws[first_draw + size * draws_of_list + i].x,
-                  min(before + count - i * DRAW_QUARTETS, DRAW_ROW));
+// Widens the draws of a list by its entries `before` to `end`: the first row of each is full, or
+// ends with the list.
+void widen(uint size, uint before, uint end) {
+    for (uint nth = draw_of(before); nth <= draw_of(end - 1); ++nth)
+        atomicMax(draws[first_draw + size * draws_of_list + nth].x,
+                  min(min(end, first_of(nth + 1)) - first_of(nth), MOST == 0 ? DRAW_ROW : MOST));
 }
 
 uvec2 group_at(uint i) { return SIFTS ? sifted[i] : active_groups[i]; }
@@ -191,7 +193,7 @@ void select_from(uint first, uint end) {
             if (look) candidates[atomicAdd(candidate_total, 1)] = lane << 5 | place;
 #endif
             if (!look) atomicOr(drawn_masks[lane], 1u << place);
-            if (LARGE_PARTS != 0 && large) atomicOr(large_masks[lane], 1u << place);
+            if (FOR_LARGE != 0 && large) atomicOr(large_masks[lane], 1u << place);
         }
     }
     barrier();
@@ -228,7 +230,7 @@ void select_from(uint first, uint end) {
         const uint count = quartets[thread];
         first_entry[thread] =
             atomicAdd(draws[first_draw + thread * draws_of_list].quartets, count);
-        widen(thread, first_entry[thread], count);
+        widen(thread, first_entry[thread], first_entry[thread] + count);
     }
     if (thread == 0) {
         uint blocks = 0;

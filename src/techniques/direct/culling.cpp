@@ -63,15 +63,16 @@ bool has_moved(const std::optional<Camera>& from, const Camera& to, Motion most)
 
 }  // namespace
 
-Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t large_parts)
+Culling::Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, Workgroups workgroups)
     : grid_(grid),
-      large_parts_(large_parts),
-      sizes_(large_parts != 0 ? 2 : 1),
+      workgroups_(workgroups),
+      sizes_(workgroups.for_large != 0 ? 2 : 1),
       occlusion_(std::move(occlusion)) {
     const gpu::Device& device = grid.device();
     const uint32_t groups = grid.info().groups.w;
     const uint64_t quartets = uint64_t{shared::QUARTETS} * groups;
-    draw_count_ = uint32_t((quartets + shared::DRAW_QUARTETS - 1) / shared::DRAW_QUARTETS);
+    const uint64_t beyond = quartets - std::min<uint64_t>(quartets, workgroups.spread);
+    draw_count_ = 1 + uint32_t((beyond + shared::DRAW_QUARTETS - 1) / shared::DRAW_QUARTETS);
     drawn_blocks_ = gpu::Buffer(device, 4 * quartets, Memory::device, "the list of drawn blocks");
     const uint64_t draws = uint64_t{LISTS} * shared::MAX_SURFACES * sizes_ * draw_count_;
     draws_ = gpu::Buffer(device, sizeof(shared::Draw) * draws, Memory::device, "draw arguments");
@@ -115,7 +116,8 @@ const gpu::Pipeline& Culling::selection(Test test) {
     pipeline =
         gpu::Pipeline::compute(grid_.device(),
                                grid_.pipeline_info("cull", std::vector(7, Kind::buffer), 8,
-                                                   {large_parts_, eyes_, uint32_t(test), sifted_}),
+                                                   {workgroups_.for_large, eyes_, uint32_t(test),
+                                                    sifted_, workgroups_.spread, workgroups_.most}),
                                code);
     return pipeline;
 }

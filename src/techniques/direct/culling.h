@@ -10,13 +10,13 @@
 #include "grid/grid.h"
 #include "image/target.h"
 #include "techniques/direct/occlusion.h"
+#include "techniques/direct/workgroups.h"
 
 namespace isorast {
 
 class Culling {
 public:
-    // `large_parts`: see BlockRasterizer.
-    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, uint32_t large_parts);
+    Culling(const Grid& grid, std::unique_ptr<OcclusionTest> occlusion, Workgroups workgroups);
 
     // The active groups of each surface: once an isovalue.
     void find_active(gpu::Commands& commands, const std::vector<float>& isovalues);
@@ -50,6 +50,9 @@ public:
     const gpu::Buffer& drawn_blocks() const { return drawn_blocks_; }
     const gpu::Buffer& draws() const { return draws_; }
     uint32_t draw_count() const { return draw_count_; }
+    uint32_t first_entry(uint32_t draw) const {  // of the list, that this draw draws
+        return draw == 0 ? 0 : workgroups_.spread + (draw - 1) * shared::DRAW_QUARTETS;
+    }
     uint32_t first_draw(Size size) const { return first_draw_ + uint32_t(size) * draw_count_; }
     // The depth pyramid, if the last select() tested blocks by it: what it hides of a block's cells
     // need not be drawn.
@@ -68,7 +71,8 @@ private:
     const gpu::Buffer& drawn() const { return has_likely_ ? drawn_before_ : visible_[seen_]; }
 
     const Grid& grid_;
-    uint32_t large_parts_, sizes_, draw_count_ = 0, first_draw_ = 0;
+    Workgroups workgroups_;
+    uint32_t sizes_, draw_count_ = 0, first_draw_ = 0;
     uint32_t sifted_ = 0;  // groups that a workgroup of a cull pass looks at first
     uint32_t eyes_ = 1;    // of this frame
     std::unique_ptr<OcclusionTest> occlusion_;

@@ -55,7 +55,7 @@ Direct::Direct(const TechniqueContext& context)
     : kind_(context.options.rasterizer),
       rasterizer_(kind_ == Rasterizer::compute ? make_compute_rasterizer(context.grid)
                                                : make_hardware_rasterizer(context.grid)),
-      culling_(context.grid, make_occlusion_test(context), rasterizer_->large_parts()) {
+      culling_(context.grid, make_occlusion_test(context), rasterizer_->workgroups()) {
     if (context.options.exact) throw Error("direct: has no exact way; use --technique raymarch");
 }
 

@@ -38,7 +38,7 @@ using gpu::Kind;
 using Code = std::span<const uint32_t>;
 
 struct Push {
-    uint32_t draw, surface, first_draw;
+    uint32_t first_entry, surface, first_draw;
 };
 
 // What a picture is drawn into beside depth.
@@ -73,7 +73,7 @@ public:
     void clear(Commands& commands, const Frame& frame, const Target& target) const override;
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override;
-    uint32_t large_parts() const override { return 0; }
+    Workgroups workgroups() const override { return {0, shared::DRAW_QUARTETS, 0}; }
     uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
 
 private:
@@ -156,8 +156,8 @@ void HardwareRasterizer::extract(Commands& commands, const Culling& culling, uin
     commands.begin_rendering(color_targets(frame, target), &target.depth, /* clear= */ false);
     commands.bind(pipeline(frame), {culling.draws(), culling.drawn_blocks(), triangle_table_});
     const uint32_t first = culling.first_draw(Culling::Size::small);  // here, all are
-    for (uint32_t draw = 0; draw < culling.draw_count(); ++draw) {
-        commands.push(Push{draw, surface, first});
+    for (uint32_t draw = culling.draw_count(); draw-- > 0;) {
+        commands.push(Push{culling.first_entry(draw), surface, first});
         commands.draw_mesh_tasks_indirect(culling.draws(), (first + draw) * sizeof(shared::Draw));
     }
     commands.end_rendering();

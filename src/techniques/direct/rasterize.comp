@@ -22,6 +22,7 @@
 #include "shaders/ray.glsl"
 #include "shaders/frustum.glsl"
 #include "techniques/direct/list.glsl"
+layout(constant_id = 7) const uint MOST = 0;  // as in workgroups.h
 #include "techniques/direct/drawn.glsl"
 
 // CPU drivers save and restore all that a thread knows at each barrier: fewer threads are faster.
@@ -314,14 +315,16 @@ void draw_block(uint part, uvec3 first, float iso) {
     }
 }
 
-// A workgroup draws one block of its quartet, or all, or a part of each.
+// A workgroup draws one block of its quartets, or all, or a part of each.
 void main() {
     const float iso = frame.surfaces[surface].w;
-    uint entry;
-    if (!my_quartet(entry)) return;
-    for (uint n = gl_WorkGroupID.z / PARTS; n < 4; n += gl_NumWorkGroups.z / PARTS) {
-        uvec3 block;
-        if (!drawn_block(entry, n, block)) return;
-        draw_block(gl_WorkGroupID.z % PARTS, block * BLOCK, iso);
+    for (uint i = 0; i == 0 || MOST != 0; ++i) {
+        uint entry;
+        if (!my_quartet(i, entry)) return;
+        for (uint n = gl_WorkGroupID.z / PARTS; n < 4; n += gl_NumWorkGroups.z / PARTS) {
+            uvec3 block;
+            if (!drawn_block(entry, n, block)) break;
+            draw_block(gl_WorkGroupID.z % PARTS, block * BLOCK, iso);
+        }
     }
 }

@@ -17,9 +17,7 @@ public:
     // The blocks of one surface that `culling` has listed. Ends with a barrier.
     virtual void extract(gpu::Commands& commands, const Culling& culling, uint32_t surface,
                          const Frame& frame, const Target& target) = 0;
-    // Workgroups that share a block which is large in the picture: such blocks get their own list.
-    // 0: they do not.
-    virtual uint32_t large_parts() const = 0;
+    virtual Workgroups workgroups() const = 0;
     virtual uint64_t gpu_bytes() const = 0;
 };
 
