@@ -16,6 +16,7 @@ layout(constant_id = 1) const bool WRITE_COLOR = true;     // and refine the hit
 layout(constant_id = 2) const bool WRITE_DISTANCE = false;
 layout(constant_id = 3) const bool MARK_VISIBLE = false;   // for the next frame's culling
 layout(constant_id = 4) const bool FILTERED = false;       // sample through the texture unit
+layout(constant_id = 5) const bool CLEARED = false;        // the background is there before
 
 layout(set = 1, binding = 0) uniform texture2DArray depth;
 layout(set = 1, binding = 1) uniform utexture2DArray surface_numbers;
@@ -157,7 +158,7 @@ void shade_pixel(ivec3 pixel, float z) {
             result = shade(ray, hit, frame.surfaces[number].rgb);
         }
     }
-    if (WRITE_COLOR) imageStore(color, pixel, result);
+    if (WRITE_COLOR && (z > 0.0 || !CLEARED)) imageStore(color, pixel, result);
     if (WRITE_DISTANCE) imageStore(distances, pixel, vec4(t));
 }
 

@@ -9,6 +9,7 @@ namespace isorast {
 
 Shade::Shade(const Grid& grid, bool exact)
     : grid_(grid),
+      cleared_(grid.device().is_cpu()),
       filtered_(!exact && grid.can_filter() && grid.stored().bits == 8),
       no_blocks_(grid.device(), 4, gpu::Buffer::Memory::device, "shading") {}
 
@@ -20,7 +21,7 @@ const gpu::Pipeline& Shade::pipeline(bool color, bool distance, bool mark) {
                                    Kind::buffer};
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
-            grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, filtered_}),
+            grid_.pipeline_info("shade", bindings, 0, {color, distance, mark, filtered_, cleared_}),
             grid_.pick(shade_comp, shade_comp_bricked));
     }
     return pipeline;
@@ -30,6 +31,11 @@ void Shade::record(gpu::Commands& commands, const Frame& frame, const Target& ta
     const bool color = frame.shading != Shading::forward, mark = target.visible_blocks;
     if (!color && !frame.want_depth && !mark) return;
     const auto pass = commands.pass("shade");
+    if (color && cleared_) {
+        const auto& [red, green, blue, alpha] = frame.background;
+        commands.clear(target.color, {{red, green, blue, alpha}});
+        commands.barrier();
+    }
     commands.bind(pipeline(color, frame.want_depth, mark),
                   {target.depth, target.surfaces, target.color, target.distances,
                    mark ? *target.visible_blocks : no_blocks_});

@@ -23,6 +23,7 @@ private:
     const gpu::Pipeline& pipeline(bool color, bool distance, bool mark);
 
     const Grid& grid_;
+    bool cleared_;  // by a command: on a CPU, several times faster than writing by a shader
     bool filtered_;
     std::array<gpu::Pipeline, 8> pipelines_;  // made when first needed
     gpu::Buffer no_blocks_;                   // stands in where nothing is marked
