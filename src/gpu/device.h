@@ -59,6 +59,9 @@ public:
     const Functions& functions() const { return functions_; }
     const DeviceInfo& info() const { return info_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    // Whether workgroups of so many threads run in lockstep: as one subgroup, each instruction for
+    // all of it, as CPU drivers do.
+    bool in_lockstep(uint32_t threads) const { return is_cpu() && threads == info_.subgroup_size; }
     Eyes eyes(uint32_t layers) const {
         if (layers == 1) return Eyes::one;
         return features_.mesh_multiview ? Eyes::views : Eyes::layers;

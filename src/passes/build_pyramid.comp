@@ -8,6 +8,8 @@
 #include "shaders/pyramid.glsl"
 
 layout(local_size_x_id = 1) in;
+layout(constant_id = 2) const bool LOCKSTEP = false;
+#include "shaders/lockstep.glsl"
 
 layout(set = 1, binding = 0) uniform texture2DArray depth;
 layout(set = 1, binding = 1, std430) writeonly buffer Pyramid { float pyramid[]; };
@@ -58,14 +60,14 @@ void main() {
         store(1, square, least);
         farthest[place.y][place.x] = least;
     }
-    barrier();
+    wait_for_all();
     for (uint i = thread; i < 80; i += threads) {
         if (i < 64)
             build(2, uvec2(i % 8, i / 8));
         else
             build(3, uvec2(i % 4, i / 4 % 4));
     }
-    barrier();
+    wait_for_all();
     for (uint i = thread; i < 5; i += threads) {
         if (i < 4)
             build(4, uvec2(i % 2, i / 2));

@@ -34,11 +34,13 @@ void DepthPyramid::fit(const Target& target) {
 
 void DepthPyramid::build(gpu::Commands& commands, const Target& target, bool surfaces) {
     gpu::Pipeline& build = build_[surfaces ? 1 : 0];
-    const uint32_t threads = grid_.device().is_cpu() ? 16 : 256;  // CPU drivers: dear at barriers
+    const gpu::Device& device = grid_.device();
+    const uint32_t threads = device.is_cpu() ? device.info().subgroup_size : 256;
     if (!build)
         build = gpu::Pipeline::compute(
-            grid_.device(),
-            grid_.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0, {threads}),
+            device,
+            grid_.pipeline_info("depth pyramid", {Kind::texture, Kind::buffer}, 0,
+                                {threads, device.in_lockstep(threads)}),
             surfaces ? std::span<const uint32_t>(build_pyramid_surfaces) : build_pyramid_comp);
     const auto pass = commands.pass(surfaces ? "surface pyramid" : "depth pyramid");
     commands.bind(build, {target.depth, pyramid_});

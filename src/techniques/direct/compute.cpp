@@ -88,9 +88,9 @@ private:
         const Workgroups share = workgroups();
         pipeline = gpu::Pipeline::compute(
             grid_.device(),
-            grid_.pipeline_info(
-                "rasterize", bindings, sizeof(Push),
-                {clipped, !cpu, threads, share.for_large, eyes, cells_tested, share.most}),
+            grid_.pipeline_info("rasterize", bindings, sizeof(Push),
+                                {clipped, !cpu, threads, share.for_large, eyes, cells_tested,
+                                 share.most, grid_.device().in_lockstep(threads)}),
             code(numbered, large));
         return pipeline;
     }

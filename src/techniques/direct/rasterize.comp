@@ -25,9 +25,10 @@
 layout(constant_id = 7) const uint MOST = 0;  // as in workgroups.h
 #include "techniques/direct/drawn.glsl"
 
-// CPU drivers save and restore all that a thread knows at each barrier: fewer threads are faster.
 layout(local_size_x = 96, local_size_x_id = 3) in;
 const uint THREADS = gl_WorkGroupSize.x;
+layout(constant_id = 8) const bool LOCKSTEP = false;
+#include "shaders/lockstep.glsl"
 
 // Marching cubes: of each case's five possible triangles, where the corners' vertices are
 // (corner_vertex); in the first one, bits 29..31, how many there are.
@@ -229,7 +230,7 @@ void rasterize(uint eye, uvec3 first, float iso) {
                             vertex_at(to_screen(polygon.corners[corner - 1])),
                             vertex_at(to_screen(polygon.corners[corner])), thread);
     }
-    barrier();
+    wait_for_all();
 }
 #else
 void find_origin(uint eye, uvec3 first) {
@@ -239,11 +240,11 @@ void find_origin(uint eye, uvec3 first) {
 
 // The vertices once more, for another eye.
 void list_again(Slab slab, uint eye, uvec3 first) {
-    barrier();
+    wait_for_all();
     for (uint row = first_row(slab); row < end_corner_row(slab); row += THREADS)
         list_row(row, rows[row].x, rows[row].y + bitCount(rows[row].x));
     find_origin(eye, first);
-    barrier();
+    wait_for_all();
 }
 
 // On the grid of 1/256 pixels, a vertex of a small block lies less than 128 pixels from its origin:
@@ -275,7 +276,7 @@ void rasterize(uint eye, uvec3 first, float iso) {
     const uint total = triangle_total;
     const ivec2 from = origin;
     if (total != 0) project_vertices(eye, first, iso);
-    barrier();
+    wait_for_all();
     for (uint i = gl_LocalInvocationIndex; i < total; i += THREADS) {
         const Listed triangle = listed(i);
         rasterize_small(eye, from, vertex_of(triangle, 0, from), vertex_of(triangle, 1, from),
@@ -294,11 +295,11 @@ void draw_block(uint part, uvec3 first, float iso) {
 #ifndef LARGE
         find_origin(0, first);
 #endif
-        barrier();
+        wait_for_all();
         list_rows(slab, left);
-        barrier();
+        wait_for_all();
         list_triangles(first);
-        barrier();
+        wait_for_all();
         const bool all = fits();
         for (uint eye = 0; eye < EYES && all; ++eye) {
 #ifndef LARGE
@@ -310,7 +311,7 @@ void draw_block(uint part, uvec3 first, float iso) {
             slab.first += slab.count;
         } else {
             slab.count /= 2;
-            barrier();
+            wait_for_all();
         }
     }
 }
