@@ -22,6 +22,7 @@ struct Binding {
     Binding(const Buffer& from) : buffer(from.handle()) {}  // NOLINT(google-explicit-constructor)
     Binding(const Texture& from) : view(from.view()) {}     // NOLINT(google-explicit-constructor)
     explicit Binding(VkImageView from) : view(from) {}
+    explicit Binding(VkBuffer from) : buffer(from) {}
     VkBuffer buffer = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
 };

@@ -78,6 +78,16 @@ VkImage create_image(const Device& device, const ImageInfo& info) {
 
 }  // namespace
 
+std::optional<Texture::Layout> Texture::layout_of(const Device& device, VkImage image,
+                                                  const ImageInfo& info) {
+    const VkImageSubresource all{.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT};
+    VkSubresourceLayout layout;
+    vkGetImageSubresourceLayout(device.handle(), image, &all, &layout);
+    const VkDeviceSize slice = info.is_3d ? layout.depthPitch : layout.arrayPitch;
+    if (layout.offset != 0 || layout.rowPitch % 4 != 0 || slice % 4 != 0) return {};
+    return Layout{uint32_t(layout.rowPitch / 4), uint32_t(slice / 4)};
+}
+
 Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
     : device_(&device), info_(info) {
     image_ = create_image(device, info);
@@ -85,6 +95,7 @@ Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
     vkGetImageMemoryRequirements(device.handle(), image_, &requirements);
     bytes_ = requirements.size;
     if (info.linear) {
+        layout_ = layout_of(device, image_, info).value();
         const VkBufferCreateInfo alias{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                        .size = requirements.size,
                                        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
@@ -136,7 +147,7 @@ uint64_t Texture::bytes_needed(const Device& device, const ImageInfo& info) {
     return requirements.size;
 }
 
-std::optional<VkSubresourceLayout> Texture::linear_layout(const Device& device, ImageInfo info) {
+std::optional<Texture::Layout> Texture::linear_layout(const Device& device, ImageInfo info) {
     info.linear = true;
     VkImageFormatProperties most;
     const VkImageCreateInfo wanted = create_info(info);
@@ -148,12 +159,9 @@ std::optional<VkSubresourceLayout> Texture::linear_layout(const Device& device, 
         bytes_needed(device, info) > device.limits().maxStorageBufferRange)
         return {};
     const VkImage image = create_image(device, info);
-    const VkImageSubresource all{.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT};
-    VkSubresourceLayout layout;
-    vkGetImageSubresourceLayout(device.handle(), image, &all, &layout);
+    const std::optional<Layout> layout = layout_of(device, image, info);
     vkDestroyImage(device.handle(), image, nullptr);
-    const bool whole = layout.offset == 0 && layout.rowPitch % 4 == 0 && layout.depthPitch % 4 == 0;
-    return whole ? std::optional(layout) : std::nullopt;
+    return layout;
 }
 
 VkImageAspectFlags Texture::aspect() const {
@@ -168,6 +176,7 @@ void Texture::swap(Texture& other) noexcept {
     std::swap(bits_view_, other.bits_view_);
     std::swap(layer_views_, other.layer_views_);
     std::swap(buffer_, other.buffer_);
+    std::swap(layout_, other.layout_);
     std::swap(memory_, other.memory_);
     std::swap(info_, other.info_);
     std::swap(bytes_, other.bytes_);

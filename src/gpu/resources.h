@@ -72,9 +72,12 @@ public:
 
     // The bytes that such an image needs on the device, without making one.
     static uint64_t bytes_needed(const Device& device, const ImageInfo& info);
-    // For ImageInfo::linear, of a volume: how its rows and slices would lie in the buffer, all on
-    // whole words; nothing if the device has no such image, or no buffer as large.
-    static std::optional<VkSubresourceLayout> linear_layout(const Device& device, ImageInfo info);
+    // For ImageInfo::linear: how rows, and slices or layers, lie in the buffer, all on whole 32-bit
+    // words; nothing if the device has no such image, or no buffer as large.
+    struct Layout {
+        uint32_t row_words = 0, slice_words = 0;
+    };
+    static std::optional<Layout> linear_layout(const Device& device, ImageInfo info);
 
     VkImage handle() const { return image_; }
     VkImageView view() const { return view_; }            // of a volume, or an array of all layers
@@ -86,9 +89,12 @@ public:
     VkImageAspectFlags aspect() const;
     uint64_t bytes() const { return bytes_; }
     VkBuffer buffer() const { return buffer_; }  // the same memory; ImageInfo::linear
+    Layout layout() const { return layout_; }    // of that
     explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
 private:
+    static std::optional<Layout> layout_of(const Device& device, VkImage image,
+                                           const ImageInfo& info);
     VkImageView make_view(VkImageViewType type, VkFormat format, uint32_t layer,
                           uint32_t layers) const;
     void swap(Texture& other) noexcept;
@@ -97,6 +103,7 @@ private:
     VkImageView view_ = VK_NULL_HANDLE, bits_view_ = VK_NULL_HANDLE;
     std::array<VkImageView, 2> layer_views_{};
     VkBuffer buffer_ = VK_NULL_HANDLE;
+    Layout layout_;
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
     ImageInfo info_;
     uint64_t bytes_ = 0;

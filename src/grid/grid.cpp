@@ -82,8 +82,9 @@ void use_buffer(const gpu::Device& device, StepFormat& format, shared::GridInfo&
     const auto layout = gpu::Texture::linear_layout(device, brick_image(format, 0));
     if (!layout) return;
     format.in_buffer = true;
-    info.voxels.w = uint32_t(layout->rowPitch / format.stored.bytes());
-    info.brick_cells.w = uint32_t(layout->depthPitch / format.stored.bytes());
+    const uint32_t voxels_in_word = 4 / format.stored.bytes();
+    info.voxels.w = voxels_in_word * layout->row_words;
+    info.brick_cells.w = voxels_in_word * layout->slice_words;
 }
 
 void check_bricks(const gpu::Device& device, const Volume& volume, const BrickPlan& plan,

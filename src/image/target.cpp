@@ -36,13 +36,15 @@ void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame
     const VkImageUsageFlags attachment = always | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     const auto make = [&](gpu::Texture& texture, VkFormat format, VkExtent3D extent,
                           VkImageUsageFlags usage, const char* what) {
-        texture = gpu::Texture(device,
-                               {.format = format,
-                                .extent = extent,
-                                .usage = usage,
-                                .layers = frame.eyes(),
-                                .as_bits = format == VK_FORMAT_R32_SFLOAT},
-                               what);
+        gpu::ImageInfo info{.format = format,
+                            .extent = extent,
+                            .usage = usage,
+                            .layers = frame.eyes(),
+                            .as_bits = format == VK_FORMAT_R32_SFLOAT};
+        // Where the CPU draws, images lie in rows anyway: depth can be a buffer's words, too.
+        info.linear = &texture == &depth && !hardware && device.is_cpu() &&
+                      gpu::Texture::linear_layout(device, info);
+        texture = gpu::Texture(device, info, what);
         commands.discard_to_general(texture);
     };
     make(color, VK_FORMAT_R8G8B8A8_UNORM, whole, both, "the picture");

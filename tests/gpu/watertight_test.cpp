@@ -42,8 +42,8 @@ public:
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT},
                          "a test");
         read_ = gpu::Buffer(device, bytes_, Memory::host, "a test");
-        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer,
-                                   Kind::image,  Kind::image,  Kind::buffer};
+        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
+                                   Kind::image,  Kind::buffer, Kind::buffer};
         const std::array<std::span<const uint32_t>, 2> code{
             sums ? std::span<const uint32_t>(rasterize_subgroups_counting)
                  : std::span<const uint32_t>(rasterize_counting),
@@ -51,7 +51,7 @@ public:
         for (size_t i = 0; i < code.size(); ++i)
             pipelines_[i] = gpu::Pipeline::compute(
                 device,
-                grid_.pipeline_info("counting", bindings, 12,
+                grid_.pipeline_info("counting", bindings, 20,
                                     {/* CLIPPED= */ 0, SNAPPED, threads(sums, Culling::Size(i)),
                                      workgroups(sums).for_large, /* EYES= */ 1,
                                      /* CELLS_TESTED= */ 0, workgroups(sums).most}),
@@ -73,9 +73,9 @@ public:
             for (const auto size : {Culling::Size::small, Culling::Size::large}) {
                 const uint32_t first = culling_.first_draw(size);
                 commands.bind(pipelines_[size_t(size)], {culling_.draws(), culling_.drawn_blocks(),
-                                                         table_, counts_, counts_, table_});
+                                                         table_, counts_, counts_, table_, table_});
                 for (uint32_t draw = 0; draw < culling_.draw_count(); ++draw) {
-                    commands.push(std::array<uint32_t, 3>{culling_.first_entry(draw), 0, first});
+                    commands.push(std::array<uint32_t, 5>{culling_.first_entry(draw), 0, first});
                     commands.dispatch_indirect(culling_.draws(),
                                                (first + draw) * sizeof(shared::Draw));
                 }

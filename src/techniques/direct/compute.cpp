@@ -26,7 +26,7 @@ using gpu::Kind;
 using Size = Culling::Size;
 
 struct Push {
-    uint32_t first_entry, surface, first_draw;
+    uint32_t first_entry, surface, first_draw, depth_row, depth_layer;
 };
 
 class ComputeRasterizer final : public BlockRasterizer {
@@ -48,15 +48,19 @@ public:
 
     void extract(Commands& commands, const Culling& culling, uint32_t surface, const Frame& frame,
                  const Target& target) override {
+        const gpu::Texture& depth = target.depth;
+        const bool in_buffer = depth.buffer() != VK_NULL_HANDLE;
         for (const Size size : {Size::large, Size::small}) {
             const gpu::Buffer* pyramid = size == Size::small ? culling.pyramid() : nullptr;
-            commands.bind(pipeline(frame, size, pyramid != nullptr),
+            commands.bind(pipeline(frame, size, pyramid != nullptr, in_buffer),
                           {culling.draws(), culling.drawn_blocks(), triangle_table_,
-                           gpu::Binding(target.depth.bits_view()), target.surfaces,
-                           pyramid ? *pyramid : triangle_table_ /* not read */});
+                           gpu::Binding(depth.bits_view()), target.surfaces,
+                           pyramid ? *pyramid : triangle_table_ /* not read */,
+                           in_buffer ? gpu::Binding(depth.buffer()) : triangle_table_});
             const uint32_t first = culling.first_draw(size);
             for (uint32_t draw = culling.draw_count(); draw-- > 0;) {
-                commands.push(Push{culling.first_entry(draw), surface, first});
+                commands.push(Push{culling.first_entry(draw), surface, first,
+                                   depth.layout().row_words, depth.layout().slice_words});
                 commands.dispatch_indirect(culling.draws(), (first + draw) * sizeof(shared::Draw));
             }
         }
@@ -72,15 +76,16 @@ public:
     uint64_t gpu_bytes() const override { return triangle_table_.bytes(); }
 
 private:
-    const gpu::Pipeline& pipeline(const Frame& frame, Size size, bool cells_tested) {
+    const gpu::Pipeline& pipeline(const Frame& frame, Size size, bool cells_tested,
+                                  bool in_buffer) {
         const bool numbered = frame.isovalues.size() > 1, clipped = !frame.clips.empty();
         const bool large = size == Size::large;
         const uint32_t eyes = frame.eyes();
-        gpu::Pipeline& pipeline =
-            pipelines_[numbered + 2 * clipped + 4 * large + 8 * (eyes - 1) + 16 * cells_tested];
+        gpu::Pipeline& pipeline = pipelines_[numbered + 2 * clipped + 4 * large + 8 * (eyes - 1) +
+                                             16 * cells_tested + 32 * in_buffer];
         if (pipeline) return pipeline;
-        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer,
-                                   Kind::image,  Kind::image,  Kind::buffer};
+        const std::vector bindings{Kind::buffer, Kind::buffer, Kind::buffer, Kind::image,
+                                   Kind::image,  Kind::buffer, Kind::buffer};
         const bool cpu = grid_.device().is_cpu();
         const uint32_t threads = cpu     ? std::max(8u, grid_.device().info().subgroup_size)
                                  : large ? 128
@@ -90,7 +95,7 @@ private:
             grid_.device(),
             grid_.pipeline_info("rasterize", bindings, sizeof(Push),
                                 {clipped, !cpu, threads, share.for_large, eyes, cells_tested,
-                                 share.most, grid_.device().in_lockstep(threads)}),
+                                 share.most, grid_.device().in_lockstep(threads), in_buffer}),
             code(numbered, large));
         return pipeline;
     }
@@ -111,7 +116,7 @@ private:
     const Grid& grid_;
     gpu::Buffer triangle_table_;
     gpu::Pipeline clear_;
-    std::array<gpu::Pipeline, 32> pipelines_;  // made when first needed
+    std::array<gpu::Pipeline, 64> pipelines_;  // made when first needed
 };
 
 }  // namespace

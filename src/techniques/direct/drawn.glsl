@@ -9,6 +9,9 @@ layout(push_constant) uniform Push {
     uint first_entry;  // of this draw
     uint surface;
     uint first_draw;
+#ifdef PUSHED_TOO
+    PUSHED_TOO
+#endif
 };
 
 // The n-th of a workgroup's quartets; false if there are fewer.

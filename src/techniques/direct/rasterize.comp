@@ -22,8 +22,6 @@
 #include "shaders/ray.glsl"
 #include "shaders/frustum.glsl"
 #include "techniques/direct/list.glsl"
-layout(constant_id = 7) const uint MOST = 0;  // as in workgroups.h
-#include "techniques/direct/drawn.glsl"
 
 layout(local_size_x = 96, local_size_x_id = 3) in;
 const uint THREADS = gl_WorkGroupSize.x;
@@ -36,6 +34,11 @@ layout(set = 1, binding = 2, std430) readonly buffer TriangleTable { uint triang
 // Depth as the bits of floats: of numbers that are not negative, the order is the same.
 layout(set = 1, binding = 3, r32ui) uniform uimage2DArray depth_bits;
 layout(set = 1, binding = 4, r32ui) writeonly uniform uimage2DArray surface_numbers;
+// Where the CPU draws: the same depth as words of the image's memory, which lies in rows. To raise
+// a word takes less than to raise a texel.
+layout(constant_id = 9) const bool DEPTH_IN_BUFFER = false;
+layout(set = 1, binding = 6, std430) buffer DepthWords { uint depth_words[]; };
+#define PUSHED_TOO uint depth_row, depth_layer;  // how many words
 layout(constant_id = 1) const bool CLIPPED = false;  // by clip planes
 // Whether depth is the plane through the vertices' positions on the grid of 1/256 pixels, as GPUs
 // have it, or through those before rounding, as lavapipe has it.
@@ -53,6 +56,16 @@ layout(constant_id = 4) const uint PARTS = 1;
 const uint PARTS = 1;
 #endif
 
+layout(constant_id = 7) const uint MOST = 0;  // as in workgroups.h
+#include "techniques/direct/drawn.glsl"
+
+// The depth before.
+uint raise_depth(ivec3 place, uint bits) {
+    if (!DEPTH_IN_BUFFER) return imageAtomicMax(depth_bits, place, bits);
+    const uint word = depth_layer * uint(place.z) + depth_row * uint(place.y) + uint(place.x);
+    return atomicMax(depth_words[word], bits);
+}
+
 // Every pixel of every triangle goes through here.
 void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
     if (CLIPPED && !is_kept(eye, vec2(pixel) + 0.5, depth)) return;
@@ -63,10 +76,10 @@ void write_pixel(uint eye, ivec2 pixel, float depth, bool front) {
 #elif defined(NUMBERED)
     // All that a dispatch draws has the same number: whoever raises the depth may write it.
     const uint bits = floatBitsToUint(depth);
-    if (imageAtomicMax(depth_bits, place, bits) < bits)
+    if (raise_depth(place, bits) < bits)
         imageStore(surface_numbers, place, uvec4(surface));
 #else
-    imageAtomicMax(depth_bits, place, floatBitsToUint(depth));
+    raise_depth(place, floatBitsToUint(depth));
 #endif
 }
 
