@@ -10,8 +10,8 @@ struct Squares {
 
 Squares squares_of(Extent extent, uint most) {
     const vec2 last = vec2(frame.size.xy) - 1.0;
-    const uvec2 low_pixel = uvec2(clamp(floor(extent.least), vec2(0.0), last));
-    const uvec2 high_pixel = uvec2(clamp(floor(extent.greatest), vec2(0.0), last));
+    const uvec2 low_pixel = to_uint(clamp(floor(extent.least), vec2(0.0), last));
+    const uvec2 high_pixel = to_uint(clamp(floor(extent.greatest), vec2(0.0), last));
     // At a level where so many would do if the extent began with a square, or at the next one.
     const uvec2 sides = high_pixel - low_pixel;
     uint level = uint(clamp(findMSB(max(sides.x, sides.y) / most) + 1, 1, int(PYRAMID_LEVELS)));

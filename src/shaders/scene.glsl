@@ -46,5 +46,10 @@ uint node_index(uint level, uvec3 node) {
     return nodes.w + node.x + nodes.x * (node.y + nodes.y * node.z);
 }
 
+// A whole number from 0 to 2^23 is in the last bits of its sum with 2^23. CPU drivers convert number
+// by number, and this at once.
+ivec3 to_int(vec3 whole) { return floatBitsToInt(whole + 8388608.0) & 0x7fffff; }
+uvec2 to_uint(vec2 whole) { return floatBitsToUint(whole + 8388608.0) & 0x7fffffu; }
+
 // The one tie rule: a value equal to the isovalue is inside.
 bool crosses(vec2 range, float iso) { return range.x < iso && range.y >= iso; }

@@ -82,7 +82,8 @@ ivec3 clamp_to_volume(ivec3 position) {
 
 // The lowest corner of the cell that holds p.
 ivec3 cell_of(vec3 p) {
-    return clamp(ivec3(floor(p)), ivec3(0), max(ivec3(grid.voxels.xyz) - 2, 0));
+    const vec3 last = vec3(max(ivec3(grid.voxels.xyz) - 2, 0));
+    return to_int(clamp(floor(p), vec3(0.0), last));
 }
 
 // The 8 corners of a cell, corner c at (c & 1, c >> 1 & 1, c >> 2).

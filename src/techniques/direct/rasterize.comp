@@ -332,13 +332,15 @@ void draw_block(uint part, uvec3 first, float iso) {
 // A workgroup draws one block of its quartets, or all, or a part of each.
 void main() {
     const float iso = frame.surfaces[surface].w;
-    for (uint i = 0; i == 0 || MOST != 0; ++i) {
+    uint i = 0;
+    do {
         uint entry;
         if (!my_quartet(i, entry)) return;
+        ++i;
         for (uint n = gl_WorkGroupID.z / PARTS; n < 4; n += gl_NumWorkGroups.z / PARTS) {
             uvec3 block;
             if (!drawn_block(entry, n, block)) break;
             draw_block(gl_WorkGroupID.z % PARTS, block * BLOCK, iso);
         }
-    }
+    } while (MOST != 0);
 }
