@@ -87,7 +87,7 @@ private:
     bool changed_ = false;  // the surface, since the last frame
     bool has_likely_ = false;
     bool dear_ = false;                  // blocks, compared with a look at the depth
-    bool rays_pay_ = false;              // after another isovalue or time step too
+    bool rays_pay_ = false;              // after other changes than cuts too
     std::optional<Camera> last_camera_;  // of the frame that marked visible blocks
 };
 
