@@ -1,7 +1,7 @@
 // The list of drawn blocks, and what a workgroup of a draw is to extract. Workgroups along x and y:
 // a quartet and each MOST-th one after it, or that one alone if MOST is 0; along z: the n-th of its
 // drawn blocks. Blocks that are large in the picture are listed from the list's end backwards:
-// define LARGE to draw those. Needs MOST.
+// define LARGE to draw those. Needs MOST; PUSHED_TOO: what else is pushed.
 
 layout(set = 1, binding = 0, std430) readonly buffer Draws { Draw draws[]; };
 layout(set = 1, binding = 1, std430) readonly buffer DrawnBlocks { uint drawn_quartets[]; };
