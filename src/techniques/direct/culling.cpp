@@ -43,9 +43,9 @@ constexpr uint32_t RAYS = 4, RAYS_IF_DEAR = 8, STEPS = 48, STEPS_IF_MANY = 64, S
 struct Motion {
     double degrees, distance;  // as a share of the distance to the target
 };
-// From CUT on, what the last frame saw says little. From FAST on, its holes are worth a step, unless
-// blocks are drawn sooner (and rays, if blocks are the hardware rasterizer's); where blocks are many
-// or dear, from ANY on.
+// From CUT on, what the last frame saw says little. From FAST on, its holes are worth a step,
+// unless blocks are drawn sooner (and rays, if blocks are the hardware rasterizer's); where blocks
+// are many or dear, from ANY on.
 constexpr Motion CUT{15, 0.25}, FAST{2, 0.035}, ANY{0.1, 0.002};
 
 glm::dvec3 to_vec(const std::array<double, 3>& v) {
@@ -165,8 +165,8 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     occlusion_->fit(target);
     const bool cut = has_moved(last_camera_, frame.camera, CUT);
     const bool fast = has_moved(last_camera_, frame.camera, FAST);
-    const bool moved = cut || (fast && rays_pay_) ||
-                       (dear_ && has_moved(last_camera_, frame.camera, ANY));
+    const bool moved =
+        cut || (fast && rays_pay_) || (dear_ && has_moved(last_camera_, frame.camera, ANY));
     if (cut) commands.fill(visible_[seen_], 0);
     last_camera_ = frame.camera;
     // Marks of drawn blocks are for all surfaces: likely ones can be drawn of a single one only.
