@@ -46,8 +46,8 @@ uint node_index(uint level, uvec3 node) {
     return nodes.w + node.x + nodes.x * (node.y + nodes.y * node.z);
 }
 
-// A whole number from 0 to 2^23 is in the last bits of its sum with 2^23. CPU drivers convert number
-// by number, and this at once.
+// A whole number from 0 to 2^23 is in the last bits of its sum with 2^23. CPU drivers convert one
+// after the other, and add all at once.
 ivec3 to_int(vec3 whole) { return floatBitsToInt(whole + 8388608.0) & 0x7fffff; }
 uvec2 to_uint(vec2 whole) { return floatBitsToUint(whole + 8388608.0) & 0x7fffffu; }
 

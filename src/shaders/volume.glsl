@@ -82,8 +82,8 @@ ivec3 clamp_to_volume(ivec3 position) {
 
 // The lowest corner of the cell that holds p.
 ivec3 cell_of(vec3 p) {
-    const vec3 last = vec3(max(ivec3(grid.voxels.xyz) - 2, 0));
-    return to_int(clamp(floor(p), vec3(0.0), last));
+    const ivec3 last = max(ivec3(grid.voxels.xyz) - 2, 0);
+    return min(to_int(clamp(floor(p), vec3(0.0), vec3(last))), last);  // p may not be a number
 }
 
 // The 8 corners of a cell, corner c at (c & 1, c >> 1 & 1, c >> 2).
