@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Direct, Culling,
                          [](const auto& each) { return std::string(name_of(each.param)); });
 
 TEST_P(Culling, ChangesNoBitOnAnyWalk) {
-    const int frames = std::getenv("ISORAST_QUICK") ? 60 : 500;
+    const int frames = std::getenv("ISORAST_QUICK") ? 40 : 500;
     const auto walk_through = [frames](Ways& ways, const Volume& volume) {
         Walk walk(volume);
         double isovalue = 0.5;
