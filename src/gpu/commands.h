@@ -106,7 +106,6 @@ public:
     void end_rendering();
 
     VkCommandBuffer handle() const { return commands_; }
-    const Device& device() const { return device_; }
 
 private:
     void push(const void* data, uint32_t bytes);

@@ -104,16 +104,11 @@ VkInstance make_instance(const void* next, const std::vector<const char*>& layer
 
 }  // namespace
 
-Device::Device(const GpuOptions& options) {
+Device::Device(const GpuOptions& options) : Device() {
     create_instance(options.validation);
-    try {
-        physical_ = select(instance_, options.device);
-        adopt_physical();
-        create_device();
-    } catch (...) {
-        vkDestroyInstance(instance_, nullptr);
-        throw;
-    }
+    physical_ = select(instance_, options.device);
+    adopt_physical();
+    create_device();
     load_functions();
 }
 
@@ -130,6 +125,9 @@ Device::Device(const HostDevice& host)
     const auto families = queue_families(physical_);
     has_graphics_ = families.at(queue_family_).queueFlags & VK_QUEUE_GRAPHICS_BIT;
     timestamp_bits_ = families.at(queue_family_).timestampValidBits;
+    if (!info_.why_not_compute.empty())
+        throw Error(fmt::format("HostDevice: {} cannot run isorast: {}", info_.name,
+                                info_.why_not_compute));
     if (!host.storage_16bit)
         throw Error("HostDevice: storageBuffer16BitAccess must be enabled on the adopted device");
     features_ = {.storage_16bit = true,
@@ -140,6 +138,9 @@ Device::Device(const HostDevice& host)
                  .storage_without_format = host.storage_without_format,
                  .fragment_stores = host.fragment_stores,
                  .representative_test = host.representative_test};
+    const std::string missing = why_not_hardware(has_graphics_, features_);
+    if (info_.why_not_hardware.empty() && !missing.empty())
+        info_.why_not_hardware = missing + " on the host's device";
     load_functions();
 }
 
@@ -258,6 +259,7 @@ void Device::load_functions() {
         load(functions_.end_rendering, "vkCmdEndRendering");
     }
     if (debug_utils_) {
+        load(functions_.set_name, "vkSetDebugUtilsObjectNameEXT");
         load(functions_.begin_label, "vkCmdBeginDebugUtilsLabelEXT");
         load(functions_.end_label, "vkCmdEndDebugUtilsLabelEXT");
     }
@@ -313,9 +315,10 @@ std::vector<std::string> Gpu::validation_messages() const {
 std::vector<DeviceInfo> list_devices() {
     const VkInstance instance = gpu::make_instance(nullptr, {}, {});
     std::vector<DeviceInfo> infos;
+    const std::unique_ptr<VkInstance_T, void (*)(VkInstance)> owner(
+        instance, [](VkInstance old) { vkDestroyInstance(old, nullptr); });
     for (VkPhysicalDevice device : gpu::enumerate(instance))
         infos.push_back(gpu::describe(device));
-    vkDestroyInstance(instance, nullptr);
     return infos;
 }
 

@@ -11,7 +11,7 @@ namespace isorast::gpu {
 
 // What is enabled on the device, not only what it could do.
 struct Features {
-    bool storage_16bit = false;        // required: 16-bit entries in block lists
+    bool storage_16bit = false;        // required: min-max nodes, places in rows of vertices
     bool nonuniform_textures = false;  // volumes of several bricks
     bool mesh_shaders = false;
     bool mesh_multiview = false;  // mesh shaders draw both eyes as views
@@ -30,6 +30,7 @@ struct Functions {
     PFN_vkCmdDrawMeshTasksIndirectEXT draw_mesh_tasks_indirect = nullptr;
     PFN_vkCmdBeginRendering begin_rendering = nullptr;
     PFN_vkCmdEndRendering end_rendering = nullptr;
+    PFN_vkSetDebugUtilsObjectNameEXT set_name = nullptr;
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label = nullptr;
 };
@@ -78,6 +79,7 @@ public:
     std::vector<std::string> messages() const;
 
 private:
+    Device() = default;  // the constructors begin with this one: should they throw, ~Device() runs
     void create_instance(bool validation);
     void create_device();
     void adopt_physical();

@@ -67,8 +67,12 @@ VkDescriptorType descriptor_type(Kind kind) {
     return VK_DESCRIPTOR_TYPE_MAX_ENUM;
 }
 
+// Begins with the constructor that has nothing: should this one throw, the destructor runs.
 Pipeline::Pipeline(const Device& device, const PipelineInfo& info, VkShaderStageFlags stages)
-    : device_(&device), stages_(stages), bindings_(info.bindings) {
+    : Pipeline() {
+    device_ = &device;
+    stages_ = stages;
+    bindings_ = info.bindings;
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (uint32_t i = 0; i < bindings_.size(); ++i)
         bindings.push_back({i, descriptor_type(bindings_[i]), 1, stages, nullptr});
@@ -98,6 +102,7 @@ Pipeline Pipeline::compute(const Device& device, const PipelineInfo& info,
         .layout = pipeline.layout_};
     VK_CHECK(vkCreateComputePipelines(device.handle(), nullptr, 1, &create, nullptr,
                                       &pipeline.pipeline_));
+    pipeline.set_name(info.name);
     return pipeline;
 }
 
@@ -175,7 +180,17 @@ Pipeline Pipeline::graphics(const Device& device, const PipelineInfo& info,
         .layout = pipeline.layout_};
     VK_CHECK(vkCreateGraphicsPipelines(device.handle(), nullptr, 1, &create, nullptr,
                                        &pipeline.pipeline_));
+    pipeline.set_name(info.name);
     return pipeline;
+}
+
+void Pipeline::set_name(const char* name) const {
+    const VkDebugUtilsObjectNameInfoEXT info{
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+        .objectType = VK_OBJECT_TYPE_PIPELINE,
+        .objectHandle = reinterpret_cast<uint64_t>(pipeline_),
+        .pObjectName = name};
+    if (auto* set = device_->functions().set_name) VK_CHECK(set(device_->handle(), &info));
 }
 
 Pipeline::~Pipeline() {

@@ -24,14 +24,14 @@ struct Shader {
 };
 
 struct PipelineInfo {
-    const char* name = "";
+    const char* name = "";  // in debuggers and messages of the validation layer
     VkDescriptorSetLayout scene_layout = VK_NULL_HANDLE;
     std::vector<Kind> bindings;
     uint32_t push_bytes = 0;
     std::vector<uint32_t> constants;  // specialization constants 0, 1, 2, ...
 };
 
-// What a mesh-shader pipeline draws into.
+// What a graphics pipeline draws into.
 struct Attachments {
     std::vector<VkFormat> colors;
     VkFormat depth = VK_FORMAT_UNDEFINED;
@@ -46,7 +46,7 @@ public:
     static Pipeline compute(const Device& device, const PipelineInfo& info,
                             std::span<const uint32_t> spirv);
     // Task + mesh (+ fragment), or vertex + fragment: three vertices, no vertex input. Depth test:
-    // greater or equal, reversed depth. Both faces are drawn.
+    // greater, reversed depth. Both faces are drawn.
     static Pipeline graphics(const Device& device, const PipelineInfo& info,
                              const std::vector<Shader>& shaders, const Attachments& attachments);
     Pipeline(Pipeline&& other) noexcept { swap(other); }
@@ -66,6 +66,7 @@ public:
 
 private:
     Pipeline(const Device& device, const PipelineInfo& info, VkShaderStageFlags stages);
+    void set_name(const char* name) const;
     void swap(Pipeline& other) noexcept;
     const Device* device_ = nullptr;
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;

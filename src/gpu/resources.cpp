@@ -11,8 +11,10 @@
 
 namespace isorast::gpu {
 
-Buffer::Buffer(const Device& device, uint64_t bytes, Memory memory, const char* what)
-    : device_(&device), bytes_(bytes) {
+// Constructors begin with the one that has nothing: should they throw, destructors run.
+Buffer::Buffer(const Device& device, uint64_t bytes, Memory memory, const char* what) : Buffer() {
+    device_ = &device;
+    bytes_ = bytes;
     const VkBufferCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = bytes,
@@ -88,8 +90,9 @@ std::optional<Texture::Layout> Texture::layout_of(const Device& device, VkImage 
     return Layout{uint32_t(layout.rowPitch / 4), uint32_t(slice / 4)};
 }
 
-Texture::Texture(const Device& device, const ImageInfo& info, const char* what)
-    : device_(&device), info_(info) {
+Texture::Texture(const Device& device, const ImageInfo& info, const char* what) : Texture() {
+    device_ = &device;
+    info_ = info;
     image_ = create_image(device, info);
     VkMemoryRequirements requirements;
     vkGetImageMemoryRequirements(device.handle(), image_, &requirements);

@@ -105,6 +105,13 @@ bool has_extension(VkPhysicalDevice physical, const char* name) {
     });
 }
 
+std::string why_not_hardware(bool graphics_queue, const Features& features) {
+    if (!graphics_queue) return "no graphics queue";
+    if (!features.mesh_shaders) return "no mesh shaders (VK_EXT_mesh_shader)";
+    if (!features.dynamic_rendering) return "no dynamic rendering (Vulkan 1.3)";
+    return "";
+}
+
 Features supported_features(VkPhysicalDevice physical) {
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(physical, &properties);
@@ -190,14 +197,9 @@ DeviceInfo describe(VkPhysicalDevice physical) {
         info.why_not_compute = "no 16-bit storage buffers";
     else if (basic.limits.maxPerStageDescriptorSampledImages < 80)
         info.why_not_compute = "fewer than 80 textures in a shader";
-    if (!info.why_not_compute.empty())
-        info.why_not_hardware = info.why_not_compute;
-    else if (!queue->graphics)
-        info.why_not_hardware = "no graphics queue";
-    else if (!features.mesh_shaders)
-        info.why_not_hardware = "no mesh shaders (VK_EXT_mesh_shader)";
-    else if (!features.dynamic_rendering)
-        info.why_not_hardware = "no dynamic rendering (Vulkan 1.3)";
+    info.why_not_hardware = info.why_not_compute.empty()
+                                ? why_not_hardware(queue->graphics, features)
+                                : info.why_not_compute;
     return info;
 }
 

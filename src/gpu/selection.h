@@ -21,6 +21,8 @@ std::optional<QueueChoice> choose_queue(VkPhysicalDevice physical);
 std::optional<uint32_t> choose_copy_family(VkPhysicalDevice physical);
 
 bool has_extension(VkPhysicalDevice physical, const char* name);
+// Why the rasterizers that use graphics cannot run; empty if they can.
+std::string why_not_hardware(bool graphics_queue, const Features& features);
 Features supported_features(VkPhysicalDevice physical);
 DeviceInfo describe(VkPhysicalDevice physical);
 std::vector<VkPhysicalDevice> enumerate(VkInstance instance);

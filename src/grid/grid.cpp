@@ -321,6 +321,7 @@ std::vector<std::array<float, 2>> Grid::read_level(uint32_t level) const {
     const uint64_t bytes = (count * node_bytes + skip + 3) & ~uint64_t{3};
     gpu::Buffer host(device_, bytes, gpu::Buffer::Memory::host, "reading min-max blocks");
     gpu::run_once(device_, [&](gpu::Commands& commands) {
+        if (building_) begin_alone(commands);  // those commands may not have run yet
         commands.copy(step_->minmax, nodes.w * node_bytes - skip, host, 0, bytes);
     });
     std::vector<std::array<float, 2>> ranges(count);

@@ -21,9 +21,16 @@ namespace {
 constexpr uint64_t PIECE_BYTES = 16u << 20;
 constexpr uint64_t MIN_SHARE = 1u << 20;  // of a piece, bytes for one thread
 
-uint64_t slice_bytes(const StepFormat& format) {
-    const glm::uvec3 size = format.bricks.extent(0);
-    return uint64_t{size.x} * size.y * format.stored.bytes();
+// The size of a piece: a slice of any brick at least, and no more than the largest brick.
+uint64_t piece_bytes(const StepFormat& format) {
+    uint64_t slice = 0, all = 0;
+    for (uint32_t i = 0; i < format.bricks.count(); ++i) {
+        const glm::uvec3 size = format.bricks.extent(i);
+        const uint64_t bytes = uint64_t{size.x} * size.y * format.stored.bytes();
+        slice = std::max(slice, bytes);
+        all = std::max(all, bytes * size.z);
+    }
+    return std::max(slice, std::min(all, PIECE_BYTES));
 }
 
 uint64_t step_bytes(const gpu::Device& device, const StepFormat& format) {
@@ -242,11 +249,7 @@ bool Steps::load(Step& step, const Volume& volume) {
         sample(sampled);
         return load(step, sampled);
     }
-    if (!staging_) {
-        const uint64_t slice = slice_bytes(format_), all = slice * format_.bricks.extent(0).z;
-        staging_ =
-            std::make_unique<gpu::Staging>(device_, std::max(slice, std::min(all, PIECE_BYTES)));
-    }
+    if (!staging_) staging_ = std::make_unique<gpu::Staging>(device_, piece_bytes(format_));
     staging_->wait();  // after an error, copies into the same bricks may still run
     bool whole = true;
     for (uint32_t brick = 0; brick < format_.bricks.count() && whole; ++brick)

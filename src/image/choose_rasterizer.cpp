@@ -226,8 +226,7 @@ void write_choice(const fs::path& path, const std::string& key, const Rasterizer
 RasterizerChoice choose_rasterizer(Gpu& gpu, VoxelType type) {
     auto& known = gpu.device().rasterizer_choice;
     if (known) return *known;
-    const bool hardware =
-        gpu.info().why_not_hardware.empty() && gpu.device().features().mesh_shaders;
+    const bool hardware = gpu.info().why_not_hardware.empty();
     const std::string key = key_of(gpu, hardware);
     const fs::path file = cache_file(key);
     if (!file.empty()) known = read_choice(file, key);

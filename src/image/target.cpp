@@ -16,14 +16,18 @@ bool is_whole(const gpu::Texture& texture, Size size) {
 
 }  // namespace
 
+bool Target::has_sides_of(const Frame& frame) const {
+    return size == frame.size && eyes == frame.eyes();
+}
+
 bool Target::fits(const Frame& frame) const {
-    return size == frame.size && eyes == frame.eyes() &&
-           (frame.isovalues.size() <= 1 || is_whole(surfaces, size)) &&
+    return has_sides_of(frame) && (frame.isovalues.size() <= 1 || is_whole(surfaces, size)) &&
            (!frame.want_depth || is_whole(distances, size));
 }
 
 void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame& frame,
                  bool hardware) {
+    const bool anew = !has_sides_of(frame);
     size = frame.size;
     eyes = frame.eyes();
     const VkExtent3D whole{size.width, size.height, 1}, one{1, 1, 1};
@@ -47,13 +51,18 @@ void Target::fit(const gpu::Device& device, gpu::Commands& commands, const Frame
         texture = gpu::Texture(device, info, what);
         commands.discard_to_general(texture);
     };
-    make(color, VK_FORMAT_R8G8B8A8_UNORM, whole, both, "the picture");
-    make(depth, hardware ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R32_SFLOAT, whole,
-         hardware ? attachment : storage, "the picture's depth");
-    make(surfaces, VK_FORMAT_R32_UINT, frame.isovalues.size() > 1 ? whole : one, both,
-         "the picture's surface numbers");
-    make(distances, VK_FORMAT_R32_SFLOAT, frame.want_depth ? whole : one, storage,
-         "the picture's distances");
+    if (anew) {
+        make(color, VK_FORMAT_R8G8B8A8_UNORM, whole, both, "the picture");
+        make(depth, hardware ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R32_SFLOAT, whole,
+             hardware ? attachment : storage, "the picture's depth");
+    }
+    const bool numbered = frame.isovalues.size() > 1;
+    if (anew || (numbered && !is_whole(surfaces, size)))
+        make(surfaces, VK_FORMAT_R32_UINT, numbered ? whole : one, both,
+             "the picture's surface numbers");
+    if (anew || (frame.want_depth && !is_whole(distances, size)))
+        make(distances, VK_FORMAT_R32_SFLOAT, frame.want_depth ? whole : one, storage,
+             "the picture's distances");
 }
 
 }  // namespace isorast

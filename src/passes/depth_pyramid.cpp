@@ -25,11 +25,13 @@ uint64_t pyramid_bytes(Size size, uint32_t eyes) {
 
 DepthPyramid::DepthPyramid(const Grid& grid) : grid_(grid) {}
 
-void DepthPyramid::fit(const Target& target) {
+bool DepthPyramid::fit(const Target& target) {
     const uint64_t bytes = pyramid_bytes(target.size, target.eyes);
+    if (bytes > grid_.device().limits().maxStorageBufferRange) return false;
     if (pyramid_.bytes() != bytes)
         pyramid_ =
             gpu::Buffer(grid_.device(), bytes, gpu::Buffer::Memory::device, "the depth pyramid");
+    return true;
 }
 
 void DepthPyramid::build(gpu::Commands& commands, const Target& target, bool surfaces) {

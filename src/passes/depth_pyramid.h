@@ -11,8 +11,9 @@ namespace isorast {
 class DepthPyramid {
 public:
     explicit DepthPyramid(const Grid& grid);
-    // Once a frame, before it: makes what depends on the picture's size.
-    void fit(const Target& target);
+    // Once a frame, before it: makes what depends on the picture's size. False if the device has
+    // no buffer as large: then there is no pyramid, and nothing to test against.
+    bool fit(const Target& target);
     // `surfaces`: of surfaces alone, as if there were no holes in them; hides more than is hidden.
     void build(gpu::Commands& commands, const Target& target, bool surfaces = false);
     const gpu::Buffer& buffer() const { return pyramid_; }

@@ -72,9 +72,10 @@ std::vector<Surface::Block> scan(const std::vector<uint32_t>& counts) {
 }  // namespace
 
 // Blocks to extract, and those above them that own edges which they share: places in
-// Surface::blocks.
+// Surface::blocks. `span`: how many blocks, listed or not, from the first to the last that may.
 struct SurfaceExtractor::Batch {
     size_t first = 0, end = 0, shared_end = 0;
+    uint64_t span = 0;
 };
 
 SurfaceExtractor::SurfaceExtractor(const Grid& grid, bool gradients)
@@ -138,24 +139,25 @@ SurfaceExtractor::Batch SurfaceExtractor::next_batch(const Surface& surface, siz
     const glm::uvec4 along = grid_.info().blocks;
     // The farthest block that owns edges of block b is b + reach.
     const uint64_t reach = 1 + along.x + uint64_t{along.x} * along.y;
-    const auto bytes = [&](size_t end, size_t shared_end) {
-        const uint64_t vertices = blocks[end].first_vertex - blocks[first].first_vertex;
-        const uint64_t triangles = blocks[end].first_triangle - blocks[first].first_triangle;
-        const uint64_t slots = blocks[shared_end - 1].block - blocks[first].block + 1;
+    const auto bytes = [&](const Batch& batch) {
+        const uint64_t vertices = blocks[batch.end].first_vertex - blocks[first].first_vertex;
+        const uint64_t triangles = blocks[batch.end].first_triangle - blocks[first].first_triangle;
         return std::max({(gradients_ ? sizeof(glm::vec4) : sizeof(glm::vec3)) * vertices,
-                         sizeof(glm::uvec3) * triangles, sizeof(uint32_t) * slots,
-                         sizeof(uint16_t) * ROW_VERTICES * (shared_end - first)});
+                         sizeof(glm::uvec3) * triangles, sizeof(uint32_t) * batch.span,
+                         sizeof(uint16_t) * ROW_VERTICES * (batch.shared_end - first)});
     };
     const size_t last = blocks.size() - 1;
-    Batch batch{first, first, first};
+    Batch batch{first, first, first, 0};
     for (size_t end = first + 1; end <= last; ++end) {
+        const uint64_t farthest = std::min<uint64_t>(blocks[end - 1].block + reach, along.w - 1);
         size_t shared_end = std::max(batch.shared_end, end);
-        while (shared_end < last && blocks[shared_end].block <= blocks[end - 1].block + reach)
+        while (shared_end < last && blocks[shared_end].block <= farthest)
             ++shared_end;
-        if (end > first + 1 && bytes(end, shared_end) > BATCH_BYTES) break;
-        batch = {first, end, shared_end};
+        const Batch longer{first, end, shared_end, farthest - blocks[first].block + 1};
+        if (end > first + 1 && bytes(longer) > BATCH_BYTES) break;
+        batch = longer;
     }
-    const uint64_t needed = bytes(batch.end, batch.shared_end);
+    const uint64_t needed = bytes(batch);
     const uint64_t most = grid_.device().limits().maxStorageBufferRange;
     if (needed > most)
         throw Error(
@@ -177,10 +179,9 @@ void SurfaceExtractor::extract_batch(float isovalue, const Batch& batch, Surface
     const uint32_t vertices = end.first_vertex - first.first_vertex;
     const uint32_t triangles = end.first_triangle - first.first_triangle;
 
-    const uint32_t span = surface.blocks[batch.shared_end - 1].block - first.block + 1;
     const gpu::Buffer listed = host_buffer(device, sizeof(glm::uvec4) * all);
-    const gpu::Buffer slots = host_buffer(device, sizeof(uint32_t) * span);
-    std::fill_n(slots.data<uint32_t>(), span, NO_SLOT);
+    const gpu::Buffer slots = host_buffer(device, sizeof(uint32_t) * batch.span);
+    std::fill_n(slots.data<uint32_t>(), batch.span, NO_SLOT);
     for (uint32_t slot = 0; slot < all; ++slot) {
         const Surface::Block& block = surface.blocks[batch.first + slot];
         listed.data<glm::uvec4>()[slot] = {block.block, block.first_vertex, block.first_triangle,

@@ -143,6 +143,37 @@ TEST_F(GpuTest, AHostWithoutWhatATechniqueNeedsIsTold) {
     EXPECT_EQ(Renderer(adopted, volume).rasterizer(), Rasterizer::compute);
     host.storage_16bit = false;
     EXPECT_THROW(Gpu{host}, Error);
+    host = host_of(gpu.device());
+    host.dynamic_rendering = false;
+    Gpu plain(host);
+    for (const char* technique : {"direct", "raymarch", "meshlets"})
+        EXPECT_THROW(
+            Renderer(plain, volume, {.technique = technique, .rasterizer = Rasterizer::hardware}),
+            Error)
+            << technique;
+    EXPECT_EQ(Renderer(plain, volume).rasterizer(), Rasterizer::compute);
+}
+
+// Images are made anew for another size or number of eyes, and added when first needed: a host that
+// shows both kinds of frames in turn keeps those that it has.
+TEST_F(GpuTest, AHostsImagesStay) {
+    const Volume volume = reference::sampled("torus:16");
+    Gpu adopted(host_of(gpu.device()));
+    Renderer renderer(adopted, volume);
+    Frame plain = frame(reference::view(volume, 1), {0.0});
+    plain.want_depth = false;
+    Frame measured = plain, numbered = plain;
+    measured.want_depth = true;
+    numbered.isovalues = {0.0, 0.1};
+    VkImage color = VK_NULL_HANDLE;
+    for (const Frame& f : {plain, measured, numbered, plain, measured, numbered}) {
+        gpu::Submission submission(gpu.device());
+        const RecordedFrame recorded = record(renderer, submission.begin().handle(), f, 0);
+        submission.submit();
+        submission.wait();
+        EXPECT_TRUE(color == VK_NULL_HANDLE || recorded.color == color);
+        color = recorded.color;
+    }
 }
 
 }  // namespace

@@ -263,8 +263,14 @@ TEST_F(SeriesTest, AHostRecordsTheStepsOfASeries) {
     const auto volumes = sampled_steps("noise:40:octaves=3:type=u8:steps=5");
     const Frame f = frame(orbit(volumes[0], 30, 20), {0.5});
     std::vector<Image> alone;  // made before: the host's queues are nobody else's
-    for (const Volume& volume : volumes)
-        alone.push_back(Renderer(gpu, volume, {.technique = "raymarch"}).render(small_frame(f, 0)));
+    std::vector<std::array<double, 2>> ranges;
+    std::vector<VoxelPoints> hulls;
+    for (const Volume& volume : volumes) {
+        Renderer renderer(gpu, volume, {.technique = "raymarch"});
+        alone.push_back(renderer.render(small_frame(f, 0)));
+        ranges.push_back(renderer.value_range());
+        hulls.push_back(renderer.surface_hull({0.5}));
+    }
     Gpu adopted(host);
     Renderer renderer(adopted, series_of(volumes),
                       {.technique = "raymarch", .step_bytes = TWO_STEPS});
@@ -280,6 +286,9 @@ TEST_F(SeriesTest, AHostRecordsTheStepsOfASeries) {
             gpu::Commands commands = submissions.back()->begin();
             const RecordedFrame recorded =
                 record(renderer, commands.handle(), small_frame(f, steps[slot]), slot);
+            // What the step holds, also before the host submits what builds its pyramid.
+            EXPECT_EQ(renderer.value_range(), ranges[steps[slot]]);
+            EXPECT_EQ(renderer.surface_hull({0.5}), hulls[steps[slot]]);
             const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                            .imageExtent = {120, 90, 1}};
             vkCmdCopyImageToBuffer(commands.handle(), recorded.color, VK_IMAGE_LAYOUT_GENERAL,

@@ -62,6 +62,31 @@ TEST_F(GpuTest, AVolumeOneVoxelThinIsEmptyAndTwoIsNot) {
     }
 }
 
+// Bricks in the middle are a voxel longer than the first one; here each is uploaded in one piece.
+TEST_F(GpuTest, AThinVolumeOfManyBricks) {
+    if (!gpu.device().features().nonuniform_textures) GTEST_SKIP();
+    for (const uint32_t side : {1u, 2u}) {
+        const Volume volume = volume_of<float>({60, 16, side}, VoxelType::f32, ball);
+        const Frame f = frame(orbit(volume, 30, 40), {ball(15, 8, 0)});
+        Renderer whole(gpu, volume), bricked(gpu, volume, {.max_brick_side = 20});
+        const Image image = bricked.render(f);
+        EXPECT_EQ(bricked.stats().bricks, 4u);
+        EXPECT_EQ(covered(image) > 0, side == 2);
+        EXPECT_EQ(covered(image), covered(whole.render(f)));
+    }
+}
+
+TEST_F(GpuTest, WithoutIsovaluesThereIsNothing) {
+    const Volume volume = reference::sampled("sphere:24");
+    for (Lane& lane : lanes(volume))
+        for (const bool culling : {true, false}) {
+            Frame f = frame(orbit(volume, 30, 40), {});
+            f.culling = culling;
+            lane.renderer.render(frame(orbit(volume, 30, 40), {0.0}));
+            EXPECT_EQ(covered(lane.renderer.render(f)), 0u) << lane.name;
+        }
+}
+
 // More bricks than one, and a pyramid of 13 levels.
 TEST_F(GpuTest, AVeryLongVolume) {
     if (!gpu.device().features().nonuniform_textures) GTEST_SKIP();

@@ -131,7 +131,7 @@ void Culling::find_active(Commands& commands, const std::vector<float>& isovalue
         active_groups_.emplace_back(grid_.device(), list_bytes, Memory::device,
                                     "the list of active blocks");
     commands.fill(counters_, 0);
-    const std::array<uint32_t, 8> empty{0, 1, 1, 0, 0, 0, 1, 0};  // as in list.glsl
+    const std::array<uint32_t, 8> empty{0, 1, 1, 0, 0, 0, 1, 0};  // as in active_groups.glsl
     for (uint32_t i = 0; i < isovalues.size(); ++i)
         commands.update(active_groups_[i], 0, empty.data(), sizeof(empty));
     commands.barrier();
@@ -157,12 +157,12 @@ void Culling::begin_frame(Commands& commands, const Frame& frame, Target& target
     commands.fill(draws_, 0);
     target.visible_blocks = nullptr;
     eyes_ = frame.eyes();
-    if (!frame.culling) return commands.barrier();
+    culls_ = frame.culling && occlusion_->fit(target);
+    if (!culls_) return commands.barrier();
     // What was marked last is seen now; the other set is cleared and marked next.
     seen_ = 1 - seen_;
     target.visible_blocks = &visible_[1 - seen_];
     commands.fill(visible_[1 - seen_], 0);
-    occlusion_->fit(target);
     const bool cut = has_moved(last_camera_, frame.camera, CUT);
     const bool fast = has_moved(last_camera_, frame.camera, FAST);
     const bool moved =

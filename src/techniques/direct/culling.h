@@ -27,6 +27,9 @@ public:
     // camera turns fast. The shading pass marks this frame's visible blocks in
     // target.visible_blocks.
     void begin_frame(gpu::Commands& commands, const Frame& frame, Target& target);
+    // Whether this frame leaves out hidden blocks: unless it is not to, or its picture is too large
+    // for the occlusion test.
+    bool culls() const { return culls_; }
     enum class Select : uint32_t { all, seen, likely, unseen };
     // After such a change, and when the camera moves, seen blocks leave holes, and through a hole
     // all that is behind would be drawn. So likely blocks are drawn before: those that surfaces
@@ -84,6 +87,7 @@ private:
     uint32_t seen_ = 0;                   // which of the two is last frame's
     gpu::Buffer drawn_before_;            // the seen blocks and the likely ones
     const gpu::Buffer* pyramid_ = nullptr;
+    bool culls_ = false;    // this frame
     bool changed_ = false;  // the surface, since the last frame
     bool has_likely_ = false;
     bool dear_ = false;                  // blocks, compared with a look at the depth

@@ -13,7 +13,7 @@ public:
     explicit PyramidTest(const Grid& grid) : pyramid_(grid) {}
 
     Occlusion kind() const override { return Occlusion::hiz; }
-    void fit(const Target& target) override { pyramid_.fit(target); }
+    bool fit(const Target& target) override { return pyramid_.fit(target); }
     void look(gpu::Commands& commands, const Target& target, bool surfaces) override {
         pyramid_.build(commands, target, surfaces);
     }

@@ -65,7 +65,8 @@ void Direct::record(Commands& commands, const Frame& frame, Target& target) {
         const auto pass = commands.pass("clear");
         rasterizer_->clear(commands, frame, target);
     }
-    if (!frame.culling) return draw(commands, frame, target, Culling::Select::all);
+    if (frame.isovalues.empty()) return commands.barrier();
+    if (!culling_.culls()) return draw(commands, frame, target, Culling::Select::all);
     draw(commands, frame, target, Culling::Select::seen);
     if (culling_.has_likely()) {
         culling_.look(commands, target, /* surfaces= */ true);

@@ -88,12 +88,10 @@ private:
 HardwareRasterizer::HardwareRasterizer(const Grid& grid)
     : grid_(grid), triangle_table_(upload_triangle_table(grid.device())) {
     const gpu::Device& device = grid_.device();
-    if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
+    if (!device.info().why_not_hardware.empty())
         throw Error(fmt::format(
             "direct: {} cannot run its hardware rasterizer: {}; use --rasterizer compute",
-            device.info().name,
-            device.info().why_not_hardware.empty() ? "mesh shaders are not enabled"
-                                                   : device.info().why_not_hardware));
+            device.info().name, device.info().why_not_hardware));
 }
 
 Code HardwareRasterizer::mesh_code(bool forward, gpu::Eyes eyes) const {

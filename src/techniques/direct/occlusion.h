@@ -15,8 +15,9 @@ class OcclusionTest {
 public:
     virtual ~OcclusionTest() = default;
     virtual Occlusion kind() const = 0;
-    // Once a frame, before it: makes what depends on the picture's size.
-    virtual void fit(const Target& target) = 0;
+    // Once a frame, before it: makes what depends on the picture's size. False if the picture is
+    // too large for the test.
+    virtual bool fit(const Target& target) = 0;
     // When all blocks that the last frame saw are drawn; of a frame that draws likely blocks before
     // the others (see Culling), HiZ: with `surfaces` before these, and without after them.
     virtual void look(gpu::Commands& commands, const Target& target, bool surfaces) = 0;

@@ -20,7 +20,7 @@ namespace {
 
 using gpu::Kind;
 
-// Where the task workgroups are counted in a list of active groups (list.glsl).
+// Where the task workgroups are counted in a list of active groups (active_groups.glsl).
 constexpr uint64_t TASKS_OFFSET = 16;
 
 class RasterProxies final : public OcclusionTest {
@@ -28,7 +28,7 @@ public:
     explicit RasterProxies(const Grid& grid);
 
     Occlusion kind() const override { return Occlusion::raster; }
-    void fit(const Target&) override {}
+    bool fit(const Target&) override { return true; }
     void look(gpu::Commands&, const Target&, bool) override {}
     void test(gpu::Commands& commands, const gpu::Buffer& active_groups, const gpu::Buffer& seen,
               const Target& target) override;

@@ -81,11 +81,9 @@ private:
 
 const Grid& checked(const TechniqueContext& context) {
     const gpu::Device& device = context.grid.device();
-    if (!device.info().why_not_hardware.empty() || !device.features().mesh_shaders)
-        throw Error(fmt::format(
-            "meshlets: {} cannot run it: {}; use --technique direct", device.info().name,
-            device.info().why_not_hardware.empty() ? "mesh shaders are not enabled"
-                                                   : device.info().why_not_hardware));
+    if (!device.info().why_not_hardware.empty())
+        throw Error(fmt::format("meshlets: {} cannot run it: {}; use --technique direct",
+                                device.info().name, device.info().why_not_hardware));
     if (context.options.exact) throw Error("meshlets: has no exact way; use --technique raymarch");
     if (context.options.rasterizer == Rasterizer::compute)
         throw Error(
@@ -185,9 +183,9 @@ void Meshlets::record(Commands& commands, const Frame& frame, Target& target) {
     for (const Chunk& chunk : chunks_)
         counters.blocks_active += chunk.meshlet_count;
     commands.update(counters_, 0, &counters, sizeof(counters));
-    pyramid_.fit(target);
+    const bool culls = frame.culling && pyramid_.fit(target);
     commands.barrier();
-    if (!frame.culling) return draw(commands, frame, target, shared::ONLY_PASS);
+    if (!culls) return draw(commands, frame, target, shared::ONLY_PASS);
     draw(commands, frame, target, shared::FIRST_PASS);
     pyramid_.build(commands, target);
     draw(commands, frame, target, shared::SECOND_PASS);
