@@ -123,8 +123,12 @@ Device::Device(const HostDevice& host)
     upload_queue_ = host.upload_queue ? host.upload_queue : queue_;
     upload_family_ = host.upload_queue ? host.upload_queue_family : queue_family_;
     const auto families = queue_families(physical_);
-    has_graphics_ = families.at(queue_family_).queueFlags & VK_QUEUE_GRAPHICS_BIT;
-    timestamp_bits_ = families.at(queue_family_).timestampValidBits;
+    if (queue_family_ >= families.size() ||
+        !(families[queue_family_].queueFlags & VK_QUEUE_COMPUTE_BIT))
+        throw Error(fmt::format("HostDevice: expected a queue family with compute, found {} of {}",
+                                queue_family_, families.size()));
+    has_graphics_ = families[queue_family_].queueFlags & VK_QUEUE_GRAPHICS_BIT;
+    timestamp_bits_ = families[queue_family_].timestampValidBits;
     if (!info_.why_not_compute.empty())
         throw Error(fmt::format("HostDevice: {} cannot run isorast: {}", info_.name,
                                 info_.why_not_compute));

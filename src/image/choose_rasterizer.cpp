@@ -84,7 +84,8 @@ public:
             technique_->record(commands, frame, target_);
             commands.copy_to_buffer(target_.depth, depth_);
         });
-        const double near = info.depth_range.x, far = info.depth_range.y;
+        const double unit = world_unit(placement_);
+        const double near = info.depth_range.x * unit, far = info.depth_range.y * unit;
         uint32_t wrong = 0;
         for (uint32_t i = 0; i < PICTURE * PICTURE; ++i) {
             const uint32_t column = i % PICTURE, row = i / PICTURE;

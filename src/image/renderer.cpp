@@ -93,12 +93,16 @@ void Renderer::State::record(gpu::Commands& commands, const Frame& frame,
     try {
         record_passes(commands, frame);
     } catch (...) {
-        // What these commands would have prepared is not there.
-        grid_.forget_pyramid();
-        prepared_step_.reset();
-        target_.size = {0, 0};
+        forget_recording();
         throw;
     }
+}
+
+void Renderer::State::forget_recording() {
+    grid_.forget_pyramid();
+    prepared_step_.reset();
+    target_.size = {0, 0};
+    depth_image_ = {};
 }
 
 void Renderer::State::record_passes(gpu::Commands& commands, const Frame& frame) {
@@ -193,7 +197,12 @@ RecordedFrame Renderer::State::record_for_host(VkCommandBuffer handle, const Fra
     gpu::Commands commands(device_, handle, *host_slots_[slot]);
     record(commands, frame, host_steps_in_flight_[slot]);
     const bool as_image = copies.image && target_.depth.format() != VK_FORMAT_D32_SFLOAT;
-    if (as_image || copies.buffer) copy_depth(commands, as_image);
+    try {
+        if (as_image || copies.buffer) copy_depth(commands, as_image);
+    } catch (...) {
+        forget_recording();
+        throw;
+    }
     const auto view = [&](const gpu::Texture& texture) {
         return target_.eyes == 1 ? texture.layer_view(0) : texture.view();
     };
@@ -221,7 +230,9 @@ Image Renderer::State::read_back(const Frame& frame) const {
     std::memcpy(image.rgba.data(), color_readback_.data<uint8_t>(), image.rgba.size());
     if (frame.want_depth) {
         image.depth.resize(pixels);
-        std::memcpy(image.depth.data(), depth_readback_.data<float>(), 4 * pixels);
+        const double unit = world_unit(placement_);
+        std::transform(depth_readback_.data<float>(), depth_readback_.data<float>() + pixels,
+                       image.depth.begin(), [=](float t) { return float(t * unit); });
     }
     return frame.eyes() == 1 ? image : arrange(std::move(image), frame.stereo.mode);
 }

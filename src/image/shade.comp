@@ -53,7 +53,7 @@ Hit crossing_in_cell(Ray ray, ivec3 cell, float t, float iso) {
     hit.cell = cell;
     load_cell(brick_of(cell), cell, hit.corners);
     const vec2 span = span_in_cell(ray, cell);
-    if (!(span.x < span.y)) return hit;
+    if (!(span.x < span.y) || !are_finite(hit.corners)) return hit;
     const vec3 from = ray.origin + span.x * ray.direction - vec3(cell);
     const vec3 to = ray.origin + span.y * ray.direction - vec3(cell);
     const CellLine line = cell_line(hit.corners, from, to, iso);

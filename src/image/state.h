@@ -39,6 +39,8 @@ private:
     // One frame into these commands; `step` keeps its time step while it may be in flight.
     void record(gpu::Commands& commands, const Frame& frame, std::optional<uint32_t>& step);
     void record_passes(gpu::Commands& commands, const Frame& frame);
+    // These commands will not run: what they would have prepared is not there.
+    void forget_recording();
     void copy_depth(gpu::Commands& commands, bool as_image);
     Image read_back(const Frame& frame) const;
     void fit_readback(const Frame& frame);

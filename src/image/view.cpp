@@ -70,12 +70,30 @@ Eye moved(Eye eye, const Frame& frame, int side) {
     return eye;
 }
 
-dmat4 world_from_voxel(const Affine& affine) {
+dmat4 world_from_voxel(const Affine& affine, double unit) {
     dmat4 m(1);
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column)
-            m[column][row] = affine.m[row][column];
+            m[column][row] = affine.m[row][column] / unit;
     return m;
+}
+
+double power_of_two_below(double number) {
+    return std::ldexp(1.0, std::ilogb(number));
+}
+
+// Lengths in other units.
+Frame in_units(Frame frame, double unit) {
+    for (int axis = 0; axis < 3; ++axis) {
+        frame.camera.position[axis] /= unit;
+        frame.camera.target[axis] /= unit;
+    }
+    frame.camera.height /= unit;
+    for (auto* length : {&frame.stereo.separation, &frame.stereo.convergence})
+        if (*length) **length /= unit;
+    for (ClipPlane& clip : frame.clips)
+        clip.offset /= unit;
+    return frame;
 }
 
 // Near and far enclose the volume's box, a little widened; the near plane stays in front of the
@@ -207,10 +225,20 @@ void check(const Frame& frame) {
     check(frame.stereo);
 }
 
-shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement,
+double world_unit(const Placement& placement) {
+    double longest = 0;
+    for (const auto& row : placement.affine.m)
+        for (size_t axis = 0; axis < 3; ++axis)
+            longest = std::max(longest, std::abs(row[axis]) * placement.dims[axis]);
+    return power_of_two_below(longest);
+}
+
+shared::FrameInfo make_frame_info(const Frame& in_world, const Placement& placement,
                                   const Stored& stored) {
+    const double unit = world_unit(placement);
+    const Frame frame = in_units(in_world, unit);
     Eye middle = make_eye(frame.camera, frame.size);
-    const dmat4 world = world_from_voxel(placement.affine), voxel = glm::inverse(world);
+    const dmat4 world = world_from_voxel(placement.affine, unit), voxel = glm::inverse(world);
     fit_depth(middle, world, placement.dims);
     shared::FrameInfo info{};
     std::vector<dmat4> clip_from_voxel;
@@ -227,7 +255,13 @@ shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement
     info.depth_range = {float(middle.near), float(middle.far), middle.orthographic ? 1.0f : 0.0f,
                         0};
     // Normals follow the inverse transpose: its rows are the columns of the inverse.
-    const dmat3 normal = glm::transpose(dmat3(voxel));
+    // Their length does not matter; floats should hold products with any gradient.
+    dmat3 normal = glm::transpose(dmat3(voxel));
+    double most = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < 3; ++i)
+            most = std::max(most, std::abs(normal[axis][i]));
+    normal /= power_of_two_below(most);
     const dmat4 rows = glm::transpose(world), normal_rows = dmat4(glm::transpose(normal));
     info.normal_x = glm::vec4(normal_rows[0]);
     info.normal_y = glm::vec4(normal_rows[1]);

@@ -16,6 +16,10 @@ struct Placement {
 
 // Throws Error for a frame that cannot be drawn: sizes, isovalues, cameras.
 void check(const Frame& frame);
+// What shaders have for a unit of length in the world, so that floats hold its powers whatever the
+// data's unit is: the power of two below the volume's longest extent along an
+// axis.
+double world_unit(const Placement& placement);
 shared::FrameInfo make_frame_info(const Frame& frame, const Placement& placement,
                                   const Stored& stored);
 

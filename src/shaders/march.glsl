@@ -79,7 +79,8 @@ bool solve_through(inout March march, ivec3 block, float end) {
             least = min(least, corners[c]);
             greatest = max(greatest, corners[c]);
         }
-        if (!crosses(vec2(least, greatest), march.iso)) {
+        // Between voxels of which some are not finite is nothing.
+        if (!crosses(vec2(least, greatest), march.iso) || !are_finite(corners)) {
             if (crossed_to(march, least >= march.iso)) return true;
         } else {
             const vec3 from = march.ray.origin + march.t * march.ray.direction - vec3(cell);

@@ -1,8 +1,8 @@
 // Voxels and the trilinear field between them. Stored values: 0..255, 0..65535, or floats.
-// Everything here fetches voxels and interpolates in 32-bit arithmetic: the fixed-point filters of
-// samplers (8 bits of weight) are for marching only (sample_filtered). Every shader is compiled
-// twice: with BRICKED defined for volumes of several bricks, which needs non-uniform indexing, and
-// without.
+// Most here fetches voxels and interpolates in 32-bit arithmetic: the fixed-point filters of
+// samplers (8 bits of weight) are for marching, and for shading 8-bit voxels. Every shader is
+// compiled twice: with BRICKED defined for volumes of several bricks, which needs non-uniform
+// indexing, and without.
 
 // A brick and the voxel that its texel 0 holds.
 struct Brick {
@@ -84,6 +84,14 @@ ivec3 clamp_to_volume(ivec3 position) {
 ivec3 cell_of(vec3 p) {
     const ivec3 last = max(ivec3(grid.voxels.xyz) - 2, 0);
     return min(to_int(clamp(floor(p), vec3(0.0), vec3(last))), last);  // p may not be a number
+}
+
+// Whether all are; voxels that are not finite are stored as what is less than all others.
+bool are_finite(float corners[8]) {
+    if (VOXEL_BITS != 32) return true;
+    float least = corners[0];
+    for (int c = 1; c < 8; ++c) least = min(least, corners[c]);
+    return least >= grid.range.x;
 }
 
 // The 8 corners of a cell, corner c at (c & 1, c >> 1 & 1, c >> 2).
@@ -203,8 +211,10 @@ vec3 world_direction(vec3 direction) {
 // the eye near silhouettes, and are turned back just so far that they do not.
 vec3 world_normal(vec3 gradient, vec3 direction, bool outward) {
     const vec3 g = outward ? -gradient : gradient;
-    const vec3 n = g * mat3(frame.normal_x.xyz, frame.normal_y.xyz, frame.normal_z.xyz);
+    vec3 n = g * mat3(frame.normal_x.xyz, frame.normal_y.xyz, frame.normal_z.xyz);
     const vec3 towards = -world_direction(direction);
+    // Squares of very large or small floats are none.
+    if (VOXEL_BITS == 32) n /= max(max(abs(n.x), abs(n.y)), abs(n.z));
     const float length_squared = dot(n, n);
     if (!(length_squared > 0.0)) return towards;
     const vec3 unit = n * inversesqrt(length_squared);

@@ -144,6 +144,9 @@ TEST_F(GpuTest, AHostWithoutWhatATechniqueNeedsIsTold) {
     host.storage_16bit = false;
     EXPECT_THROW(Gpu{host}, Error);
     host = host_of(gpu.device());
+    host.queue_family = 1000;
+    EXPECT_THROW(Gpu{host}, Error);
+    host = host_of(gpu.device());
     host.dynamic_rendering = false;
     Gpu plain(host);
     for (const char* technique : {"direct", "raymarch", "meshlets"})

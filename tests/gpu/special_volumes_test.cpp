@@ -76,6 +76,39 @@ TEST_F(GpuTest, AThinVolumeOfManyBricks) {
     }
 }
 
+// The same picture, whatever the units of lengths and of values: powers of two, so that all else is
+// exactly the same.
+TEST_F(GpuTest, UnitsDoNotMatter) {
+    const auto in_units = [](double length, float value) {
+        Volume volume = volume_of<float>(
+            {24, 24, 24}, VoxelType::f32,
+            [=](uint32_t i, uint32_t j, uint32_t k) { return value * float(ball(i, j, k)); });
+        for (auto& row : volume.affine.m)
+            for (double& entry : row)
+                entry *= length;
+        return volume;
+    };
+    const Volume plain = in_units(1, 1);
+    const double level = ball(2, 11, 11);
+    std::vector<Lane> lanes_of_plain = lanes(plain);
+    for (const auto& [length, value] :
+         {std::pair(0x1p-66, 1.0f), {0x1p66, 1.0f}, {1.0, 0x1p-90f}, {1.0, 0x1p90f}}) {
+        const Volume volume = in_units(length, value);
+        std::vector<Lane> others = lanes(volume);
+        for (size_t lane = 0; lane < others.size(); ++lane) {
+            const Image expected =
+                lanes_of_plain[lane].renderer.render(frame(orbit(plain, 30, 40), {level}));
+            const Image found =
+                others[lane].renderer.render(frame(orbit(volume, 30, 40), {level * value}));
+            EXPECT_GT(covered(expected), 1000u);
+            EXPECT_EQ(found.rgba, expected.rgba)
+                << others[lane].name << ' ' << length << ' ' << value;
+            for (size_t i = 0; i < found.depth.size(); i += 97)
+                EXPECT_EQ(double(found.depth[i]), double(expected.depth[i]) * length);
+        }
+    }
+}
+
 TEST_F(GpuTest, WithoutIsovaluesThereIsNothing) {
     const Volume volume = reference::sampled("sphere:24");
     for (Lane& lane : lanes(volume))
@@ -172,6 +205,32 @@ TEST_F(GpuTest, VoxelsThatAreNotFiniteAreOutside) {
             EXPECT_LE(b.depth_rms, 0.1) << all[lane].name << ' ' << bad;
             auto range = all[lane].renderer.value_range();
             EXPECT_TRUE(std::isfinite(range[0]) && std::isfinite(range[1])) << all[lane].name;
+        }
+    }
+}
+
+// Each way ends the surface at the last finite voxels. Between those and others is nothing, not
+// even rounding errors of the lowest floats; marching cubes cut a corner there.
+TEST_F(GpuTest, NothingIsBetweenVoxelsThatAreNotFinite) {
+    for (const bool scattered : {false, true}) {
+        const Volume volume = volume_of<float>(BALL, VoxelType::f32, [&](int i, int j, int k) {
+            const bool bad = scattered ? (i * 7 + j * 5 + k * 3) % 61 == 0 : i < 8;
+            return bad ? std::nanf("") : ball(i, j, k);
+        });
+        const Frame f = frame(orbit(volume, 200, 25), {2});
+        Renderer direct(gpu, volume, {.technique = "direct", .rasterizer = Rasterizer::compute});
+        const Picture expected = picture(direct.render(f));
+        for (Lane& lane : lanes(volume, {.exact = true})) {
+            const Picture found = picture(lane.renderer.render(f));
+            uint32_t beyond = 0;
+            for (size_t i = 0; i < found.hits.size(); ++i)
+                beyond +=
+                    std::isfinite(found.hits[i].depth) && !std::isfinite(expected.hits[i].depth);
+            EXPECT_LE(beyond, 20u) << lane.name << ' ' << scattered;
+            if (scattered) continue;
+            const Agreement a = agreement(found, expected, 1);
+            EXPECT_GE(a.overlap, 0.99) << lane.name;
+            EXPECT_LE(a.depth_rms, 0.1) << lane.name;
         }
     }
 }

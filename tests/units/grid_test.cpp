@@ -142,15 +142,58 @@ TEST(Stored, TheRangeIsThatOfTheFiniteFloats) {
         const Volume volume = volume_of<float>(values, VoxelType::f32, slope);
         std::vector<std::byte> bytes(volume.byte_count());
         StoredRange range;
-        store_voxels(volume, stored_as(volume), 0, volume.dims[0], bytes.data(), range);
-        return std::pair(range.least, range.greatest);
+        const Stored stored = stored_as(volume);
+        store_voxels(volume, stored, 0, volume.dims[0], bytes.data(), range);
+        return std::pair(float(stored.value(double(range.least))),
+                         float(stored.value(double(range.greatest))));
     };
     EXPECT_EQ(range_of({nan, -5, 3, inf, -0.0f}), std::pair(-5.0f, 3.0f));
-    EXPECT_EQ(range_of({nan, -5, 3, inf, -0.0f}, -2), std::pair(-3.0f, 5.0f));
+    EXPECT_EQ(range_of({nan, -5, 3, inf, -0.0f}, -2), std::pair(-6.0f, 10.0f));
     EXPECT_EQ(range_of({-1e-40f, 1e-40f, -1e-42f}), std::pair(-1e-40f, 1e-40f));
     EXPECT_EQ(range_of({largest, -largest, -inf}), std::pair(-largest, largest));
     const auto [least, greatest] = range_of({nan, inf, -inf});
     EXPECT_GT(least, greatest);
+}
+
+// "No data" far from all others, at the least or the greatest value, costs them no digits.
+TEST(Stored, FillValuesLeaveTheOthersExact) {
+    for (const double fill : {-1e300, -1e20, -1e9, 1e9, 1e20, 1e300}) {
+        std::vector<double> data(20, fill);
+        for (const double value : {0.0, 0.25, 30.5, 30.5000001, 31.0, 60.0, 91.0})
+            data.push_back(value);
+        const Volume volume = volume_of<double>(data, VoxelType::f64);
+        const auto values = stored_values(volume);
+        const Stored stored = stored_as(volume);
+        for (size_t i = 20; i < data.size(); ++i)
+            EXPECT_NEAR(stored.value(values[i]), data[i], 1e-5) << fill;
+        EXPECT_EQ(values[0] < values[20], fill < 0);
+        EXPECT_EQ(values[0] > values.back(), fill > 0);
+        EXPECT_LT(values[22], values[23]);
+    }
+    expect_same_order(volume_of<int32_t>(
+        {std::numeric_limits<int32_t>::min(), 0, 1, 2, 3, 1000, 1001}, VoxelType::i32));
+}
+
+// Squares and products of stored values must be floats, or nothing is shaded.
+TEST(Stored, ValuesFarFromOneBecomeNearer) {
+    for (const int exponent : {-300, -60, -35, -20, 20, 35, 60, 300}) {
+        const double unit = std::pow(10.0, exponent);
+        std::vector<double> data{0, unit, 2 * unit, 3 * unit, 10 * unit};
+        const auto doubles = stored_values(volume_of<double>(data, VoxelType::f64));
+        EXPECT_GT(doubles[2] - doubles[1], 1e-9) << exponent;
+        EXPECT_LT(doubles[2] - doubles[1], 1e9) << exponent;
+        if (std::abs(exponent) > 35) continue;
+        std::vector<float> floats;
+        for (const double value : data)
+            floats.push_back(float(value));
+        const Volume volume = volume_of<float>(floats, VoxelType::f32);
+        const auto values = stored_values(volume);
+        const Stored stored = stored_as(volume);
+        EXPECT_GT(values[2] - values[1], 1e-9) << exponent;
+        EXPECT_LT(values[2] - values[1], 1e9) << exponent;
+        for (size_t i = 0; i < values.size(); ++i)
+            EXPECT_EQ(float(stored.value(values[i])), floats[i]) << exponent;
+    }
 }
 
 }  // namespace

@@ -199,8 +199,10 @@ void Meshlets::draw(Commands& commands, const Frame& frame, const Target& target
     if (frame.isovalues.size() > 1) colors = {&target.surfaces};
     commands.begin_rendering(colors, &target.depth, /* clear= */ pass != shared::SECOND_PASS);
     for (const Chunk& chunk : chunks_) {
-        commands.bind(pipeline(frame), {chunk.meshlets, chunk.vertices, chunk.triangles, chunk.seen,
-                                        pyramid_.buffer(), counters_});
+        commands.bind(pipeline(frame),
+                      {chunk.meshlets, chunk.vertices, chunk.triangles, chunk.seen,
+                       pass == shared::SECOND_PASS ? pyramid_.buffer() : counters_ /* not read */,
+                       counters_});
         commands.push(Push{chunk.meshlet_count, chunk.surface, pass, has_seen_});
         commands.draw_mesh_tasks_indirect(chunk.draw, 0);
     }
