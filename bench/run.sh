@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The published numbers, by one command: runs the scenarios, draws the figures, prints the tables for docs/results.md.
+# The published numbers, but still pictures' (the scenario frames), by one command: runs the scenarios, draws the figures,
+# prints the tables for docs/results.md.
 #   bench/run.sh [-o FOLDER] [--quick] [SCENARIO...]      FOLDER: docs/results; --quick: small, for drivers on the CPU
 # ISORAST_BENCH names the program (build/isorast-bench), PYTHON one that has matplotlib.
 set -euo pipefail

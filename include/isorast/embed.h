@@ -55,13 +55,19 @@ struct DepthCopies {
 
 // Records one frame into `commands`, outside a render pass. `slot`, below
 // RendererOptions::frames_in_flight, names the transient resources to use: its previous use must
-// have finished on the GPU. A frame of another size, or the first with several isovalues or with
-// want_depth, makes new images: then all frames recorded before must have finished. At most one
-// frame of a Renderer is recorded at a time. Barriers before and after the frame are included.
-// Frames must be submitted in the order in which they were recorded. A time step that is not on the
-// GPU is waited for here; without HostDevice::upload_queue it is also read here, and uploaded by
-// submissions to HostDevice::queue. So does the technique meshlets with new isovalues or a new time
-// step, and waits: frames recorded before must have been submitted then.
+// have finished on the GPU. A frame of another size or number of eyes makes all images anew, and
+// the first after that with several isovalues or with want_depth adds one: then all frames recorded
+// before must have finished. At most one frame of a Renderer is recorded at a time. Barriers before
+// and after the frame are included. Frames must be submitted in the order in which they were
+// recorded. A time step that is not on the GPU is waited for here; without HostDevice::upload_queue
+// it is also read here, and uploaded by submissions to HostDevice::queue. So does the technique
+// meshlets with new isovalues or a new time step, and waits: frames recorded before must have been
+// submitted then.
+//
+// Throws Error as Renderer::render() does, for a slot out of range, and for DepthCopies::image
+// without graphics. Then the commands must be discarded, not submitted, and the next frame counts
+// as one of another size. The Renderer waits for its own submissions only: destroy it when all
+// recorded frames have finished.
 RecordedFrame record(Renderer& renderer, VkCommandBuffer commands, const Frame& frame,
                      uint32_t slot, const DepthCopies& copies = {});
 

@@ -26,7 +26,8 @@ struct DeviceInfo {
     std::string why_not_hardware, why_not_compute;
 };
 
-// Every device that the loader knows, in its order; never throws for a device that does not fit.
+// Every device that the loader knows, in its order, those that do not fit too. Throws Error where
+// there is no driver.
 std::vector<DeviceInfo> list_devices();
 
 enum class Rasterizer : uint8_t { automatic, hardware, compute };
@@ -53,9 +54,11 @@ struct GpuOptions {
 
 class Gpu {
 public:
-    // Throws Error when no device fits, with the reason for each.
+    // Throws Error where there is no driver, when no device fits, with the reason for each, and
+    // when the validation layer is wanted but not installed.
     explicit Gpu(const GpuOptions& options = {});
-    // Adopts the host's instance, device and queue, which must outlive this object.
+    // Adopts the host's instance, device and queue, which must outlive this object. Throws Error
+    // without HostDevice::storage_16bit, and for a device with a why_not_compute.
     explicit Gpu(const HostDevice& host);
     Gpu(Gpu&&) noexcept;
     ~Gpu();

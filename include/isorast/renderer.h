@@ -30,13 +30,14 @@ std::optional<Occlusion> parse_occlusion(std::string_view word);
 std::optional<StereoMode> parse_stereo(std::string_view word);
 
 struct RendererOptions {
-    // One of techniques(); "auto": direct, or raymarch where direct cannot be had.
+    // One of techniques(); "auto": direct, or raymarch where direct cannot be had or with `exact`.
     std::string technique = "auto";
     Rasterizer rasterizer = Rasterizer::automatic;
     Occlusion occlusion = Occlusion::automatic;
-    bool exact = false;           // raymarch: solve each cell's cubic instead of stepping
+    // raymarch: solve each cell's cubic instead of stepping. direct and meshlets throw Error.
+    bool exact = false;
     uint32_t max_brick_side = 0;  // largest side of a 3D image in voxels; 0: what the device allows
-    uint32_t frames_in_flight = 2;
+    uint32_t frames_in_flight = 2;  // slots of record() in <isorast/embed.h>; 0 counts as 1
     // Most bytes on the device for the time steps of a series: those that fit stay there. At least
     // two stay. 0: half of the device's memory, a quarter on CPU drivers.
     uint64_t step_bytes = 0;
@@ -46,7 +47,8 @@ struct Color {
     float r = 0, g = 0, b = 0, a = 1;  // sRGB, 0 to 1
 };
 
-// Keeps the points p of the surface with dot(normal, p) >= offset, world coordinates.
+// Keeps the points p of the surface with dot(normal, p) >= offset, world coordinates. Both finite;
+// the normal has any length but 0.
 struct ClipPlane {
     std::array<double, 3> normal{1, 0, 0};
     double offset = 0;
@@ -56,20 +58,22 @@ struct ClipPlane {
 // sheared so that what lies at the distance of convergence shows no parallax.
 struct Stereo {
     StereoMode mode = StereoMode::off;
-    // World units. By default the eyes converge at the camera's target, and are a 30th of the
-    // distance of convergence apart: the usual limit for comfort.
+    // World units, positive. By default the eyes converge at the camera's target, and are a 30th of
+    // the distance of convergence apart: the usual limit for comfort.
     std::optional<double> separation{}, convergence{};
 };
 
 struct Frame {
-    std::vector<double> isovalues{};  // data units; at most MAX_SURFACES (32) opaque surfaces
+    // Data units, finite; at most MAX_SURFACES (32) opaque surfaces.
+    std::vector<double> isovalues{};
     std::vector<Color>
         colors{};  // one for each isovalue; the default palette fills up what is missing
     Camera camera{};
-    Size size{};                     // of one eye's picture
+    Size size{};                     // of one eye's picture; sides of 1 to 16384 pixels
     std::vector<ClipPlane> clips{};  // at most MAX_CLIPS (8)
     Stereo stereo{};
-    uint32_t time_step = 0;  // of a series
+    uint32_t time_step = 0;  // of a series, below Series::steps
+    // forward: direct with the hardware rasterizer only.
     Shading shading = Shading::gooch;
     Color background{1, 1, 1, 1};  // alpha 0: transparent
     bool culling = true;  // frustum culling (and occlusion culling where the technique has it)
@@ -91,7 +95,9 @@ struct FrameStats {
     double wait_ms = 0;           // until the time step was read and uploaded; 0: it was there
     uint32_t resident_steps = 1;  // time steps on the GPU
     uint64_t volume_bytes = 0;    // voxels on the GPU, brick aprons included, of all these steps
-    uint64_t extra_bytes = 0;     // everything else on the GPU but the frame's targets
+    // Of the grid and the technique, whatever the picture's size: min-max blocks, lists, meshes.
+    uint64_t extra_bytes = 0;
+    // The frame's images. In neither: the depth pyramid, copies of the depth, and host memory.
     uint64_t target_bytes = 0;
     uint32_t bricks = 0;
 };
@@ -115,7 +121,8 @@ RasterizerChoice choose_rasterizer(Gpu& gpu, VoxelType type = VoxelType::u8);
 class Renderer {
 public:
     // Uploads the volume (or samples its formula) and builds the min-max blocks. The volume may be
-    // freed afterwards. Throws Error when the device or the technique cannot do it.
+    // freed afterwards; the Gpu must outlive the Renderer. Throws Error when the device or the
+    // technique cannot do it.
     Renderer(Gpu& gpu, const Volume& volume, const RendererOptions& options = {});
     // The same for the first step. The others are read and uploaded when a frame shows them, or
     // before, by a thread of the Renderer: then the step that will probably be next, as far again
@@ -125,12 +132,14 @@ public:
     ~Renderer();
 
     // Waits for the frame's time step if it is not there; throws its Error if it cannot be read.
+    // Throws Error too for what Frame, Camera and Stereo do not allow, and when memory runs out.
     Image render(const Frame& frame);
 
     // The frame's GPU times and counts, of the last render().
     const FrameStats& stats() const;
     // The range of the finite voxels, in data units, of the time step that was shown last, at first
-    // step 0; as found on the GPU.
+    // step 0; as found on the GPU; NaN if there are none. This and surface_hull() may submit
+    // to the device's queue and wait.
     std::array<double, 2> value_range() const;
     // Corners of the outermost blocks that the surfaces at these isovalues (data units) cross;
     // empty when there is no surface. For cameras that fit the object and not the empty space

@@ -126,6 +126,7 @@ struct Statistics {
     // histogram.
     double percentile(double percent) const;
 };
+// Throws Error for 0 bins, and as check() does.
 Statistics statistics(const Volume& volume, uint32_t bins = 1024);
 
 // An isovalue worth looking at first: the threshold that best separates the object from its
@@ -134,7 +135,7 @@ double suggest_isovalue(const Volume& volume, const Statistics& statistics);
 
 // "300", "200,600", "200:1000:100", "p99", "1.5sigma", "auto", and comma lists of these, in data
 // units. Sigma counts standard deviations above the mean. `statistics` is called only if a word
-// needs it. Throws Error naming the word that does not parse.
+// needs it. Throws Error naming the word that does not parse, or that makes more than 32.
 std::vector<double> parse_isovalues(std::string_view text, const Volume& volume);
 
 }  // namespace isorast

@@ -8,7 +8,7 @@
 #include "shaders/fragment.glsl"
 
 layout(location = 0) out uint surface_number;
-layout(push_constant) uniform Push { uint draw, surface; };
+layout(push_constant) uniform Push { uint unused, surface; };  // as the task shader's begins
 
 void main() {
     clip_fragment();

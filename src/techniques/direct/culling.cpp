@@ -28,11 +28,11 @@ constexpr uint32_t LISTS = 3;
 
 // With fewer blocks than this (a volume of 256^3), drawing in more steps costs more than drawing
 // all blocks at once. A GPU's compute rasterizer draws 20000 while the last ray is waited for: more
-// of them (512^3), and as MANY (1024^3) to cast rays after each change.
+// of them (512^3), and as MANY (half of 1024^3) to cast rays after each change.
 constexpr uint32_t WORTH_A_STEP = 1 << 15, WORTH_A_STEP_IF_SOON = 1 << 18, MANY = 1 << 20;
 
 // Groups of blocks that a workgroup of a cull pass looks at as wholes first; from so many blocks
-// on, on CPUs and on GPUs (2048^3).
+// on, on CPUs and on GPUs (half of 2048^3).
 constexpr uint32_t SIFTED = 32, WORTH_SIFTING_ON_CPU = 1 << 8, WORTH_SIFTING = 1 << 23;
 
 // Rays that guess: how many across a block where the volume fills the picture, and after how many

@@ -12,7 +12,7 @@
 layout(location = 0) in vec3 position;  // voxel space
 layout(location = 1) in vec3 gradient;
 layout(location = 0) out vec4 color;
-layout(push_constant) uniform Push { uint draw, surface; };
+layout(push_constant) uniform Push { uint unused, surface; };  // as in drawn.glsl
 
 void main() {
     clip_fragment();

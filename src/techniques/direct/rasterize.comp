@@ -13,10 +13,11 @@
 // variant rasterize_large: -DLARGE
 // variant rasterize_large_numbered: -DLARGE -DNUMBERED
 // variant rasterize_large_counting: -DLARGE -DCOUNTING
-// Workgroup: one block of 8^3 cells, or, LARGE, for blocks that are large in the picture, a part of
-// it. Thread: rows of voxels, then of cells, then cells, then vertices, then triangles; LARGE:
-// pixels. Out: the depth of the surface's triangles there. Extraction and rasterization in one
-// compute shader: no mesh shaders, no graphics queue.
+// Workgroup: a block of 8^3 cells; or a quartet's blocks in turn, on a CPU many quartets'
+// (workgroups.h); LARGE, for blocks that are large in the picture: on a GPU a part of each. Thread:
+// rows of voxels, then of cells, then cells, then vertices, then triangles; LARGE: pixels. Out: the
+// depth of the surface's triangles there. Extraction and rasterization in one compute shader: no
+// mesh shaders, no graphics queue.
 #include "shaders/scene.glsl"
 #include "shaders/volume.glsl"
 #include "shaders/ray.glsl"
