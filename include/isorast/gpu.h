@@ -58,7 +58,8 @@ public:
     // when the validation layer is wanted but not installed.
     explicit Gpu(const GpuOptions& options = {});
     // Adopts the host's instance, device and queue, which must outlive this object. Throws Error
-    // without HostDevice::storage_16bit, and for a device with a why_not_compute.
+    // without HostDevice::storage_16bit, for a queue family without compute, and for a device with
+    // a why_not_compute.
     explicit Gpu(const HostDevice& host);
     Gpu(Gpu&&) noexcept;
     ~Gpu();

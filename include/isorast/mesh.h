@@ -30,7 +30,8 @@ struct MeshOptions {
 // grid crosses the isovalue, by linear interpolation; inside is value >= isovalue. Parts without
 // area, such as a lone voxel at the isovalue, are left out. The same volume gives the same mesh
 // every time. Throws Error when the device cannot hold the volume, when its storage buffers are too
-// small, and for a surface of 2^32 or more vertices or triangles.
+// small, for isovalues that are not finite, and for a surface of 2^32 or more vertices or
+// triangles.
 std::vector<Mesh> extract_meshes(Gpu& gpu, const Volume& volume,
                                  const std::vector<double>& isovalues,
                                  const MeshOptions& options = {});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From a volume to meshes: extract on the GPU, weld, place in the world.
 #include <fmt/format.h>
+#include <isorast/error.h>
 #include <isorast/mesh.h>
 #include <isorast/series.h>
 
@@ -92,6 +93,9 @@ Mesh in_world(const Surface& surface, const Volume& volume) {
 std::vector<Mesh> extract_meshes(Gpu& gpu, const Volume& volume,
                                  const std::vector<double>& isovalues, const MeshOptions& options) {
     check(volume);
+    for (const double isovalue : isovalues)
+        if (!std::isfinite(isovalue))
+            throw Error("isovalues: expected finite numbers, found NaN or infinity");
     const Grid grid(gpu.device(), series_of({&volume, 1}), options.max_brick_side,
                     /* step_bytes= */ 0);
     const SurfaceExtractor extractor(grid, /* gradients= */ true);

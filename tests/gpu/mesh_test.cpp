@@ -189,6 +189,7 @@ TEST_F(GpuTest, SeveralMeshesAndNone) {
     for (const std::string thin : {"sphere:1x24x24", "sphere:24x1x24", "sphere:1"})
         EXPECT_TRUE(extract_mesh(gpu, sampled(thin), 0.25).positions.empty()) << thin;
     EXPECT_FALSE(extract_mesh(gpu, sampled("sphere:2x24x24"), 0.25).triangles.empty());
+    EXPECT_THROW(extract_mesh(gpu, volume, std::nan("")), Error);
 }
 
 }  // namespace
