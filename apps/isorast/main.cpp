@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <numeric>
+#include <sstream>
 
 #include "options.h"
 
@@ -45,8 +45,8 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 }
 
 int wrong_usage(const std::string& message, const std::string& command) {
-    fmt::print(stderr, "isorast: error: {}\nTry: isorast {}--help\n", message,
-               command.empty() ? "" : command + " ");
+    print_error(message);
+    print_message(fmt::format("Try: isorast {}--help\n", command.empty() ? "" : command + " "));
     return WRONG_USAGE;
 }
 
@@ -100,6 +100,14 @@ struct Help : CLI::Formatter {
     }
 };
 
+// The help of the command that was named, or the version.
+int print_help(const CLI::App& app, const CLI::ParseError& error) {
+    std::ostringstream text;
+    const int code = app.exit(error, text, text);
+    print(text.str());
+    return code;
+}
+
 int run(std::vector<std::string> arguments) {
     CLI::App app("isorast: isosurfaces straight from voxels to pixels", "isorast");
     app.footer("Example: isorast render head.nrrd --iso 300 -o head.png");
@@ -113,7 +121,7 @@ int run(std::vector<std::string> arguments) {
                            [](const auto& command) { return command->app.get_name(); });
 
     if (arguments.empty()) {
-        fmt::print(stderr, "{}", app.help());
+        print_message(app.help());
         return WRONG_USAGE;
     }
     const bool help = std::ranges::any_of(arguments, [](const std::string& word) {
@@ -131,7 +139,7 @@ int run(std::vector<std::string> arguments) {
             return command->run();
         }
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // the help, the version
+        if (error.get_exit_code() == 0) return print_help(app, error);
         for (const auto& command : commands) {
             if (command->app.parsed()) chosen = command.get();
         }
@@ -146,13 +154,14 @@ int run(std::vector<std::string> arguments) {
 
 int main(int count, char** words) {
     try {
+        isorast::cli::occupy_closed_streams();
         const int code = isorast::cli::run({words + 1, words + count});
-        if (std::fflush(stdout) != 0) throw isorast::Error("standard output: cannot be written");
+        isorast::cli::flush_output();
         return code;
     } catch (const std::bad_alloc&) {
-        std::fputs("isorast: error: out of memory\n", stderr);
+        isorast::cli::print_error("out of memory; choose a smaller volume or picture");
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "isorast: error: %s\n", error.what());
+        isorast::cli::print_error(error.what());
     }
     return 1;
 }

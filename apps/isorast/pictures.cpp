@@ -3,7 +3,6 @@
 #include "pictures.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 namespace isorast::cli {
@@ -44,8 +43,8 @@ Written write_picture(const Image& image, const std::string& path, bool layers,
         return {{path}, image.size};
     }
     const std::vector<uint8_t> bytes = encode_png(image, text);
-    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout))
-        throw Error("standard output: the picture cannot be written");
+    print({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    flush_output();
     return {{path}, image.size};
 }
 

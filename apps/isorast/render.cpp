@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "frames.h"
@@ -331,24 +330,23 @@ struct Render : Command {
         const std::string path = difference_path(
             output == "-" ? default_output(arguments.inputs.front(), false) : outputs[index]);
         write_png(path, difference_picture(image, expected, tolerance));
-        fmt::print(stderr, "isorast: error: {} differs: {}; see {}\n", references[index],
-                   text_of(difference, image.size, tolerance), path);
+        print_error(fmt::format("{} differs: {}; see {}", references[index],
+                                text_of(difference, image.size, tolerance), path));
     }
 
     void print(const RenderReport& report) const {
-        FILE* out = output == "-" ? stderr : stdout;
-        if (json) {
-            fmt::print(out, "{}", text_of(cli::json_of(report)));
-        } else {
-            fmt::print(out, "{}{}", summary(report), stats ? stats_table(report) : "");
-        }
+        const std::string text = json ? text_of(cli::json_of(report))
+                                      : summary(report) + (stats ? stats_table(report) : "");
+        if (output == "-")
+            print_message(text);
+        else
+            cli::print(text);
     }
 
     static bool print_validation(const Gpu& gpu) {
         const auto messages = gpu.validation_messages();
-        for (const std::string& message : messages) {
-            fmt::print(stderr, "isorast: error: validation: {}\n", message);
-        }
+        for (const std::string& message : messages)
+            print_error("validation: " + message);
         return !messages.empty();
     }
 };

@@ -54,6 +54,12 @@ class CommandLine(unittest.TestCase):
         return done.stdout if binary else done.stdout.decode(), err
 
 
+    def redirected(self, redirection, *words):
+        """Runs the program as a shell does with such a redirection; returns what it did."""
+        return subprocess.run(["sh", "-c", f'exec "$0" "$@" {redirection}', ISORAST, *words],
+                              cwd=self.folder.name, capture_output=True, timeout=300)
+
+
 class Usage(CommandLine):
     def test_no_arguments_print_the_help(self):
         out, err = self.isorast(code=2)
@@ -126,6 +132,32 @@ class Usage(CommandLine):
         self.assertIn("INPUT", self.isorast("render", code=2)[1])
         self.isorast("render", "sphere:8", "--iso", code=2)
         self.isorast("compare", "a.png", code=2)
+
+
+class Streams(CommandLine):
+    def test_output_that_cannot_be_written(self):
+        self.write("a.png", png(8, 4, [10, 20, 30, 255]))
+        for words in [["--version"], ["--help"], ["render", "--help"], ["info", "sphere:8"],
+                      ["info", "sphere:8", "--json"], ["compare", "a.png", "a.png"]]:
+            for redirection, why in [(">/dev/full", "No space left on device"), (">&-", "Bad file descriptor")]:
+                with self.subTest(words=words, redirection=redirection):
+                    done = self.redirected(redirection, *words)
+                    self.assertEqual(done.returncode, 1)
+                    self.assertEqual(done.stderr.decode(),
+                                     f"isorast: error: standard output: cannot be written: {why}\n")
+
+    def test_errors_that_cannot_be_written(self):
+        for redirection in ["2>/dev/full", "2>&-", "<&- >&- 2>&-"]:
+            self.assertEqual(self.redirected(redirection, "info", "none.raw").returncode, 1)
+            self.assertEqual(self.redirected(redirection, "frobnicate").returncode, 2)
+            self.assertEqual(self.redirected(redirection).returncode, 2)
+
+    def test_errors_are_one_line_of_text(self):
+        _, err = self.isorast("info", "a\nb\x1b[31m\tü\x7f.raw", code=1)
+        self.assertTrue(err.startswith(r"isorast: error: a\nb\x1b[31m\tü\x7f.raw: there is no such file"), err)
+        self.assertEqual(err.count("\n"), 1)
+        self.assertIn(r"a\nb", self.isorast("a\nb", code=2)[1])
+        self.assertIn(r"a\rb", self.isorast("render", "sphere:8", "--color", "a\rb", code=2)[1])
 
 
 class Compare(CommandLine):
@@ -212,13 +244,6 @@ class Info(CommandLine):
             self.assertRegex(err, r"\Aisorast: error: [^\n]+\n\Z")
 
 
-    def test_output_that_cannot_be_written(self):
-        with open("/dev/full", "wb") as full:
-            done = subprocess.run([ISORAST, "info", "sphere:8"], stdout=full, stderr=subprocess.PIPE, timeout=60)
-        self.assertEqual(done.returncode, 1)
-        self.assertIn(b"standard output", done.stderr)
-
-
 class Devices(CommandLine):
     def test_json_and_table_agree(self):
         devices = json.loads(self.isorast("devices", "--json")[0])
@@ -261,6 +286,19 @@ class Render(CommandLine):
         out, err = self.isorast("render", *self.words, "sphere:16", "-o", "-", binary=True)
         self.assertEqual(out, self.read("a.png"))
         self.assertIn("96x64", err)
+
+    def test_streams_that_cannot_be_written(self):
+        words = ["render", *self.words, "gyroid:16:steps=2", "--iso", "0", "-o"]
+        self.isorast(*words, "good.png")
+        for redirection in ["2>/dev/full", "2>&-"]:
+            self.assertEqual(self.redirected(redirection, *words, "out.png").returncode, 0)
+            self.assertEqual(self.read("out.png"), self.read("good.png"))
+            os.remove(self.path("out.png"))
+            self.assertEqual(self.redirected(redirection, *words, "-").stdout, self.read("good.png"))
+        for redirection in [">/dev/full", ">&-"]:
+            done = self.redirected(redirection, *words, "-")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(b"isorast: error: standard output: cannot be written: ", done.stderr)
 
     def test_json(self):
         found = json.loads(self.render("torus:24", "--json", "--repeat", "3", "-o", "t.png")[0])
