@@ -91,6 +91,16 @@ int no_command(const std::vector<std::string>& arguments, const std::vector<std:
                        "");
 }
 
+// CLI11 would take the next word as the value of "--name=". Empty where no argument is like that.
+std::string option_without_value(const std::vector<std::string>& arguments) {
+    for (const std::string& word : arguments) {
+        if (word == "--") break;
+        if (word.starts_with("--") && word.find('=') == word.size() - 1)
+            return word.substr(0, word.size() - 1);
+    }
+    return "";
+}
+
 // CLI11's help without the lists of excluded options, which the error messages give.
 struct Help : CLI::Formatter {
     std::string make_option_opts(const CLI::Option* option) const override {
@@ -127,7 +137,10 @@ int run(std::vector<std::string> arguments) {
     const bool help = std::ranges::any_of(arguments, [](const std::string& word) {
         return word == "--help" || word == "-h" || word == "--version";
     });
-    if (!command_first(arguments, names) && !help) return no_command(arguments, names);
+    const bool named = command_first(arguments, names);
+    if (const std::string option = option_without_value(arguments); !option.empty())
+        return wrong_usage(option + ": expected a value after '='", named ? arguments[0] : "");
+    if (!named && !help) return no_command(arguments, names);
 
     const Command* chosen = nullptr;
     try {

@@ -71,12 +71,12 @@ struct Render : Command {
         add_word("--shading", "gooch (default), phong, normals, depth, blocks or forward",
                  "Surface", frame.shading, parse_shading);
         app.add_option("--technique", options.technique,
-                       fmt::format("auto, {}", fmt::join(techniques(), " or ")))
+                       fmt::format("{}", fmt::join(with_automatic(techniques()), ", ")))
             ->type_name("NAME")
             ->capture_default_str()
             ->check(CLI::IsMember(with_automatic(techniques())).description(""))
             ->group("Surface");
-        add_word("--rasterizer", "hardware, compute or automatic (default)", "Surface",
+        add_word("--rasterizer", "auto (default), hardware or compute", "Surface",
                  options.rasterizer, parse_rasterizer);
         app.add_flag("--exact", options.exact,
                      "raymarch: solve each cell's cubic instead of stepping")

@@ -121,6 +121,19 @@ class Usage(CommandLine):
                     _, err = self.isorast("render", "sphere:8", f"{option}={value}", code=2)
                     self.assertIn(option, err)
 
+    def test_a_length_that_is_none(self):
+        for option in ["--eye-separation", "--convergence"]:
+            for found in ["0", "-1", "near", "inf", "nan", "1e999", "1m"]:
+                _, err = self.isorast("render", "sphere:8", option, found, code=2)
+                self.assertEqual(err.splitlines()[0],
+                                 f"isorast: error: {option}: expected a length greater than 0, found {found}")
+
+    def test_a_rasterizer_that_is_none(self):
+        words = "auto (default), hardware or compute"
+        self.assertIn(words, self.isorast("render", "--help")[0])
+        self.assertIn(f'expected {words}; found "automatic"',
+                      self.isorast("render", "sphere:8", "--rasterizer", "automatic", code=2)[1])
+
     def test_options_that_exclude_or_need_each_other(self):
         for words in [["--view", "+x", "--azimuth", "3"], ["--camera-position", "1,2,3", "--roll", "3"],
                       ["--camera-target", "1,2,3"], ["--tolerance", "3"], ["-o", "-", "--json"],
@@ -131,6 +144,10 @@ class Usage(CommandLine):
     def test_missing_values(self):
         self.assertIn("INPUT", self.isorast("render", code=2)[1])
         self.isorast("render", "sphere:8", "--iso", code=2)
+        for option in ["--iso", "--time", "--color", "--view"]:
+            _, err = self.isorast("render", "sphere:8", f"{option}=", "-o", "x.png", code=2)
+            self.assertEqual(err, f"isorast: error: {option}: expected a value after '='\nTry: isorast render --help\n")
+        self.isorast("--iso=", "sphere:8", code=2)
         self.isorast("compare", "a.png", code=2)
 
 
