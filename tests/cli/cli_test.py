@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The command line from outside: exit codes, messages, help, files. Usage: cli_test.py ISORAST [test...]"""
+import gzip
 import json
 import os
 import struct
@@ -54,10 +55,10 @@ class CommandLine(unittest.TestCase):
         return done.stdout if binary else done.stdout.decode(), err
 
 
-    def redirected(self, redirection, *words):
-        """Runs the program as a shell does with such a redirection; returns what it did."""
-        return subprocess.run(["sh", "-c", f'exec "$0" "$@" {redirection}', ISORAST, *words],
-                              cwd=self.folder.name, capture_output=True, timeout=300)
+    def shell(self, command, *words):
+        """Runs the program as "$@" in a shell's command; returns what it did."""
+        return subprocess.run(["sh", "-c", command, "sh", ISORAST, *words], cwd=self.folder.name,
+                              capture_output=True, timeout=300)
 
 
 class Usage(CommandLine):
@@ -158,16 +159,16 @@ class Streams(CommandLine):
                       ["info", "sphere:8", "--json"], ["compare", "a.png", "a.png"]]:
             for redirection, why in [(">/dev/full", "No space left on device"), (">&-", "Bad file descriptor")]:
                 with self.subTest(words=words, redirection=redirection):
-                    done = self.redirected(redirection, *words)
+                    done = self.shell(f'"$@" {redirection}', *words)
                     self.assertEqual(done.returncode, 1)
                     self.assertEqual(done.stderr.decode(),
                                      f"isorast: error: standard output: cannot be written: {why}\n")
 
     def test_errors_that_cannot_be_written(self):
         for redirection in ["2>/dev/full", "2>&-", "<&- >&- 2>&-"]:
-            self.assertEqual(self.redirected(redirection, "info", "none.raw").returncode, 1)
-            self.assertEqual(self.redirected(redirection, "frobnicate").returncode, 2)
-            self.assertEqual(self.redirected(redirection).returncode, 2)
+            self.assertEqual(self.shell(f'"$@" {redirection}', "info", "none.raw").returncode, 1)
+            self.assertEqual(self.shell(f'"$@" {redirection}', "frobnicate").returncode, 2)
+            self.assertEqual(self.shell(f'"$@" {redirection}').returncode, 2)
 
     def test_errors_are_one_line_of_text(self):
         _, err = self.isorast("info", "a\nb\x1b[31m\tü\x7f.raw", code=1)
@@ -261,6 +262,20 @@ class Info(CommandLine):
             self.assertRegex(err, r"\Aisorast: error: [^\n]+\n\Z")
 
 
+    def test_memory_that_is_not_there(self):
+        limited = 'ulimit -v 250000; "$@"'
+        if self.shell(limited, "--version").returncode != 0:
+            self.skipTest("this build needs more memory to start")
+        self.write("zeros.nrrd", b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1024 1024 256\nencoding: gzip\n\n"
+                   + gzip.compress(bytes(1 << 28), 1))
+        for name, size, helps in [("sphere:4096", 4 << 36, "choose a smaller size"),
+                                  ("zeros.nrrd", 1 << 28, "one uncompressed little-endian file needs none")]:
+            done = self.shell(limited, "info", name)
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(done.stderr.decode(), f"isorast: error: {name}: expected memory for its voxels, "
+                             f"{size} bytes, found less; {helps}\n")
+
+
 class Devices(CommandLine):
     def test_json_and_table_agree(self):
         devices = json.loads(self.isorast("devices", "--json")[0])
@@ -308,12 +323,12 @@ class Render(CommandLine):
         words = ["render", *self.words, "gyroid:16:steps=2", "--iso", "0", "-o"]
         self.isorast(*words, "good.png")
         for redirection in ["2>/dev/full", "2>&-"]:
-            self.assertEqual(self.redirected(redirection, *words, "out.png").returncode, 0)
+            self.assertEqual(self.shell(f'"$@" {redirection}', *words, "out.png").returncode, 0)
             self.assertEqual(self.read("out.png"), self.read("good.png"))
             os.remove(self.path("out.png"))
-            self.assertEqual(self.redirected(redirection, *words, "-").stdout, self.read("good.png"))
+            self.assertEqual(self.shell(f'"$@" {redirection}', *words, "-").stdout, self.read("good.png"))
         for redirection in [">/dev/full", ">&-"]:
-            done = self.redirected(redirection, *words, "-")
+            done = self.shell(f'"$@" {redirection}', *words, "-")
             self.assertEqual(done.returncode, 1)
             self.assertIn(b"isorast: error: standard output: cannot be written: ", done.stderr)
 
