@@ -380,6 +380,26 @@ class Render(CommandLine):
         self.render("sphere:17", "--clip", "y>0", "--clip", "x<0.2,z<0.2", "-o", "three.png")
         self.isorast("compare", "0.png", "three.png", code=1)
 
+    def test_a_surface_out_of_view_is_noted(self):
+        clipped = "isorast: note: sphere:16: only background: --clip leaves nothing that the camera sees\n"
+        for words in [[], ["--background", "#804020"], ["--transparent"], ["--stereo", "side-by-side"],
+                      ["--stereo", "anaglyph", "--background", "#804020"], ["--shading", "depth"], ["--repeat", "2"]]:
+            with self.subTest(words=words):
+                self.assertEqual(self.render("sphere:16", "--clip", "x>1e9", *words, "-o", "a.png")[1], clipped)
+        _, err = self.render("sphere:16", "--camera-position", "9,0,0", "--camera-target", "10,0,0")
+        self.assertEqual(err, "isorast: note: sphere:16: only background: the camera sees no surface\n")
+        for words in [["--clip", "x>0"], ["--background", "#804020"], ["--stereo", "anaglyph"], ["--transparent"]]:
+            self.assertEqual(self.render("sphere:16", *words)[1], "")
+        # One reason is enough.
+        _, err = self.render("sphere:16", "--clip", "x>1e9", "--iso", "9")
+        self.assertRegex(err, r"\Aisorast: note: sphere:16: no surface at 9: [^\n]+\n\Z")
+        # Of a series, some pictures may be empty.
+        for step, value in enumerate([0, 200]):
+            self.write(f"t{step}_8x8x8_uint8.raw", bytes(255 if at == 0 else value if at == 292 else 10 for at in range(512)))
+        _, err = self.render("t0_8x8x8_uint8.raw", "t1_8x8x8_uint8.raw", "--time", "all", "--iso", "100",
+                             "--clip", "i>2", "-o", "f{frame}.png")
+        self.assertEqual(err, "")
+
     def test_culling_changes_no_pixel(self):
         for word in ["off", "hiz", "auto"]:
             found = json.loads(self.render("gyroid:40", "--culling", word, "--json", "-o", f"{word}.png")[0])
