@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
 // isorast compare: how much two pictures differ; exit 1 where a pixel differs by more than allowed.
-#include <fmt/format.h>
-
-#include <cstdio>
-
 #include "options.h"
 
 namespace isorast::cli {
@@ -34,8 +30,8 @@ struct Compare : Command {
         const Image a = read_png(first), b = read_png(second);
         const Difference difference = compare(a, b, tolerance);
         if (!output.empty()) write_png(output, difference_picture(a, b, tolerance));
-        fmt::print("{}", json ? text_of(json_of(difference, tolerance))
-                              : text_of(difference, a.size, tolerance) + "\n");
+        print(json ? text_of(json_of(difference, tolerance))
+                   : text_of(difference, a.size, tolerance) + "\n");
         return difference.pixels_over == 0 ? 0 : 1;
     }
 };

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "options.h"
 
@@ -28,7 +27,7 @@ void print_table(const std::vector<Row>& rows) {
         for (size_t i = 0; i < row.size(); ++i)
             line += fmt::format("{:<{}}  ", row[i], widths[i]);
         line.erase(line.find_last_not_of(' ') + 1);
-        fmt::print("{}\n", line);
+        print(line + "\n");
     }
 }
 
@@ -91,7 +90,7 @@ struct Devices : Command {
             Json list = Json::array();
             for (size_t i = 0; i < devices.size(); ++i)
                 list.push_back(describe(devices[i], i));
-            fmt::print("{}", text_of(list));
+            print(text_of(list));
             return 0;
         }
         if (devices.empty()) {

@@ -118,7 +118,7 @@ std::vector<std::string> picture_names(const std::string& option, const std::str
 Progress::Progress(size_t total) : total_(total), shown_(total > 1 && isatty(STDERR_FILENO)) {}
 
 Progress::~Progress() {
-    if (shown_ && done_ > 0) fmt::print(stderr, "\r\033[K");
+    if (shown_ && done_ > 0) print_message("\r\033[K");
 }
 
 void Progress::done() {
@@ -126,8 +126,8 @@ void Progress::done() {
     if (!shown_) return;
     constexpr size_t WIDTH = 40;
     const size_t filled = WIDTH * done_ / total_;
-    fmt::print(stderr, "\r[{:=<{}}{:<{}}] {} of {}", "", filled, "", WIDTH - filled, done_, total_);
-    std::fflush(stderr);
+    print_message(
+        fmt::format("\r[{:=<{}}{:<{}}] {} of {}", "", filled, "", WIDTH - filled, done_, total_));
 }
 
 }  // namespace isorast::cli

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "frames.h"
 #include "histogram.h"
@@ -58,7 +57,7 @@ std::string with_units(const std::string& units) {
 }
 
 void line(const char* label, const std::string& text) {
-    fmt::print("  {:<12} {}\n", label, text);
+    print(fmt::format("  {:<12} {}\n", label, text));
 }
 
 struct Info : Command {
@@ -93,7 +92,7 @@ struct Info : Command {
         const Statistics values = statistics(volume);
         const double isovalue = suggest_isovalue(volume, values);
         if (json) {
-            fmt::print("{}", text_of(describe(volume, values, isovalue, mapped)));
+            print(text_of(describe(volume, values, isovalue, mapped)));
         } else {
             print_header(volume, mapped);
             print_values(volume, values, isovalue);
@@ -134,7 +133,7 @@ struct Info : Command {
         const auto spacing = volume.affine.spacing();
         const auto& n = volume.dims;
         const char* how = volume.field ? "from a formula" : mapped ? "memory-mapped" : "in memory";
-        fmt::print("{}\n", volume.name);
+        print(volume.name + "\n");
         line("dimensions", fmt::format("{} x {} x {}", n[0], n[1], n[2]));
         line("type", fmt::format("{}, {}, {}", name_of(volume.type),
                                  human_bytes(volume.byte_count()), how));
@@ -172,8 +171,8 @@ struct Info : Command {
                  fmt::format("value = voxel * {:.9g} + {:.9g}", volume.slope, volume.intercept));
         }
         if (values.minimum == values.maximum) return line("surface", "none: all voxels are equal");
-        fmt::print("\n{}\n{}\n", draw_histogram(values, volume, isovalue, terminal_width()),
-                   render_command(isovalue));
+        print(fmt::format("\n{}\n{}\n", draw_histogram(values, volume, isovalue, terminal_width()),
+                          render_command(isovalue)));
     }
 };
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <numeric>
+#include <sstream>
 
 #include "options.h"
 
@@ -45,8 +45,8 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 }
 
 int wrong_usage(const std::string& message, const std::string& command) {
-    fmt::print(stderr, "isorast: error: {}\nTry: isorast {}--help\n", message,
-               command.empty() ? "" : command + " ");
+    print_error(message);
+    print_message(fmt::format("Try: isorast {}--help\n", command.empty() ? "" : command + " "));
     return WRONG_USAGE;
 }
 
@@ -91,6 +91,16 @@ int no_command(const std::vector<std::string>& arguments, const std::vector<std:
                        "");
 }
 
+// CLI11 would take the next word as the value of "--name=". Empty where no argument is like that.
+std::string option_without_value(const std::vector<std::string>& arguments) {
+    for (const std::string& word : arguments) {
+        if (word == "--") break;
+        if (word.starts_with("--") && word.find('=') == word.size() - 1)
+            return word.substr(0, word.size() - 1);
+    }
+    return "";
+}
+
 // CLI11's help without the lists of excluded options, which the error messages give.
 struct Help : CLI::Formatter {
     std::string make_option_opts(const CLI::Option* option) const override {
@@ -99,6 +109,14 @@ struct Help : CLI::Formatter {
         return text.empty() ? "" : " " + text;
     }
 };
+
+// The help of the command that was named, or the version.
+int print_help(const CLI::App& app, const CLI::ParseError& error) {
+    std::ostringstream text;
+    const int code = app.exit(error, text, text);
+    print(text.str());
+    return code;
+}
 
 int run(std::vector<std::string> arguments) {
     CLI::App app("isorast: isosurfaces straight from voxels to pixels", "isorast");
@@ -113,13 +131,16 @@ int run(std::vector<std::string> arguments) {
                            [](const auto& command) { return command->app.get_name(); });
 
     if (arguments.empty()) {
-        fmt::print(stderr, "{}", app.help());
+        print_message(app.help());
         return WRONG_USAGE;
     }
     const bool help = std::ranges::any_of(arguments, [](const std::string& word) {
         return word == "--help" || word == "-h" || word == "--version";
     });
-    if (!command_first(arguments, names) && !help) return no_command(arguments, names);
+    const bool named = command_first(arguments, names);
+    if (const std::string option = option_without_value(arguments); !option.empty())
+        return wrong_usage(option + ": expected a value after '='", named ? arguments[0] : "");
+    if (!named && !help) return no_command(arguments, names);
 
     const Command* chosen = nullptr;
     try {
@@ -131,7 +152,7 @@ int run(std::vector<std::string> arguments) {
             return command->run();
         }
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // the help, the version
+        if (error.get_exit_code() == 0) return print_help(app, error);
         for (const auto& command : commands) {
             if (command->app.parsed()) chosen = command.get();
         }
@@ -146,13 +167,14 @@ int run(std::vector<std::string> arguments) {
 
 int main(int count, char** words) {
     try {
+        isorast::cli::occupy_closed_streams();
         const int code = isorast::cli::run({words + 1, words + count});
-        if (std::fflush(stdout) != 0) throw isorast::Error("standard output: cannot be written");
+        isorast::cli::flush_output();
         return code;
     } catch (const std::bad_alloc&) {
-        std::fputs("isorast: error: out of memory\n", stderr);
+        isorast::cli::print_error("out of memory; choose a smaller volume or picture");
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "isorast: error: %s\n", error.what());
+        isorast::cli::print_error(error.what());
     }
     return 1;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 
 #include "frames.h"
@@ -103,21 +102,20 @@ struct MeshCommand : Command {
         const uint64_t bytes = is_no_file ? 0 : size;
         const std::string units = meshes.front().length_units;
         if (json) {
-            fmt::print("{}", text_of(Json{{"output", output},
-                                          {"bytes", bytes},
-                                          {"triangles", triangles},
-                                          {"vertices", vertices},
-                                          {"surfaces", surfaces},
-                                          {"length_units", units},
-                                          {"device", device.name},
-                                          {"driver", device.driver},
-                                          {"seconds", seconds}}));
-            return;
+            return print(text_of(Json{{"output", output},
+                                      {"bytes", bytes},
+                                      {"triangles", triangles},
+                                      {"vertices", vertices},
+                                      {"surfaces", surfaces},
+                                      {"length_units", units},
+                                      {"device", device.name},
+                                      {"driver", device.driver},
+                                      {"seconds", seconds}}));
         }
-        fmt::print("{}  iso {}  {} triangles  {} vertices  {}  lengths in {}  {}  {:.2f} s\n{}",
-                   output, values, triangles, vertices, human_bytes(bytes),
-                   units.empty() ? "unknown units" : units, device.name, seconds,
-                   stats ? lines : "");
+        print(fmt::format(
+            "{}  iso {}  {} triangles  {} vertices  {}  lengths in {}  {}  {:.2f} s\n{}", output,
+            values, triangles, vertices, human_bytes(bytes),
+            units.empty() ? "unknown units" : units, device.name, seconds, stats ? lines : ""));
     }
 };
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "frames.h"
 
@@ -209,10 +208,6 @@ Json json_of(const Difference& difference, double tolerance) {
 
 std::string text_of(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-void note(const std::string& text) {
-    fmt::print(stderr, "isorast: note: {}\n", text);
 }
 
 }  // namespace isorast::cli

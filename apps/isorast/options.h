@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "streams.h"
+
 namespace isorast::cli {
 
 using Json = nlohmann::ordered_json;
@@ -58,7 +60,5 @@ std::string shell_word(const std::string& text);
 std::string text_of(const Difference& difference, Size size, double tolerance);
 Json json_of(const Difference& difference, double tolerance);
 std::string text_of(const Json& json);  // indented; bytes that are no UTF-8 are replaced
-// One line on stderr: "isorast: note: ...".
-void note(const std::string& text);
 
 }  // namespace isorast::cli

@@ -3,7 +3,8 @@
 #include "pictures.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <array>
+#include <cmath>
 #include <filesystem>
 
 namespace isorast::cli {
@@ -25,6 +26,17 @@ std::string difference_path(const std::string& output) {
     return std::filesystem::path(output).replace_extension(".difference.png").string();
 }
 
+bool shows_only_background(const Image& image, const Color& background, bool anaglyph) {
+    const auto channel = [](float value) { return uint8_t(std::lround(255 * value)); };
+    std::array<uint8_t, 4> empty{channel(background.r), channel(background.g),
+                                 channel(background.b), channel(background.a)};
+    if (anaglyph) empty = image.pixel(0, 0);
+    for (size_t at = 0; at < image.rgba.size(); at += empty.size())
+        if (!std::equal(empty.begin(), empty.end(), image.rgba.begin() + ptrdiff_t(at)))
+            return false;
+    return true;
+}
+
 Written write_picture(const Image& image, const std::string& path, bool layers,
                       const std::vector<std::pair<std::string, std::string>>& text) {
     if (layers) {
@@ -44,8 +56,8 @@ Written write_picture(const Image& image, const std::string& path, bool layers,
         return {{path}, image.size};
     }
     const std::vector<uint8_t> bytes = encode_png(image, text);
-    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout))
-        throw Error("standard output: the picture cannot be written");
+    print({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    flush_output();
     return {{path}, image.size};
 }
 

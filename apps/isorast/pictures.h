@@ -17,6 +17,10 @@ struct Written {
     Size size;  // of each
 };
 
+// Whether no pixel shows anything but the background. The color of an anaglyph's is not known:
+// there, whether all pixels are alike.
+bool shows_only_background(const Image& image, const Color& background, bool anaglyph);
+
 // To a PNG file with these texts, or, "-", to standard output. Two eyes in `layers` become two
 // files: picture.png becomes picture.left.png and picture.right.png. Throws Error.
 Written write_picture(const Image& image, const std::string& path, bool layers,

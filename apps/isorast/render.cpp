@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "frames.h"
@@ -40,6 +39,7 @@ struct Render : Command {
     bool transparent = false, stats = false, json = false;
     double tolerance = 0;
     size_t repeat = 1;
+    bool all_empty = true;  // each of the pictures
 
     explicit Render(CLI::App& parent)
         : Command(*parent.add_subcommand("render", "Render isosurfaces to PNG files")) {
@@ -72,12 +72,12 @@ struct Render : Command {
         add_word("--shading", "gooch (default), phong, normals, depth, blocks or forward",
                  "Surface", frame.shading, parse_shading);
         app.add_option("--technique", options.technique,
-                       fmt::format("auto, {}", fmt::join(techniques(), " or ")))
+                       fmt::format("{}", fmt::join(with_automatic(techniques()), ", ")))
             ->type_name("NAME")
             ->capture_default_str()
             ->check(CLI::IsMember(with_automatic(techniques())).description(""))
             ->group("Surface");
-        add_word("--rasterizer", "hardware, compute or automatic (default)", "Surface",
+        add_word("--rasterizer", "auto (default), hardware or compute", "Surface",
                  options.rasterizer, parse_rasterizer);
         app.add_flag("--exact", options.exact,
                      "raymarch: solve each cell's cubic instead of stepping")
@@ -248,6 +248,7 @@ struct Render : Command {
                             .tolerance = tolerance};
         render_all(renderer, volume.name, report);
         report.seconds = seconds_since(start);
+        if (all_empty) note_what_hides(volume, renderer.value_range());
         print(report);
         const bool differs = report.difference && report.difference->pixels_over > 0;
         return print_validation(gpu) || differs ? 1 : 0;
@@ -264,6 +265,9 @@ struct Render : Command {
                 const Image image = renderer.render(frame);
                 if (round > 0 || rounds == 1) all_stats.push_back(renderer.stats());
                 if (round + 1 == rounds) {
+                    all_empty = all_empty &&
+                                shows_only_background(image, frame.background,
+                                                      view.stereo.mode == StereoMode::anaglyph);
                     write(image, i, source, report);
                     if (!reference.empty()) compare_with_reference(image, i, report);
                 }
@@ -300,11 +304,26 @@ struct Render : Command {
             return note(fmt::format("{}: no voxel is finite, so only background", name));
         }
         for (double isovalue : frame.isovalues) {
-            // Inside is value >= isovalue: at the minimum everything is inside.
-            if (isovalue > range[0] && isovalue <= range[1]) continue;
+            if (has_surface(isovalue, range)) continue;
             note(fmt::format("{}: no surface at {:.6g}: the values go from {:.6g} to {:.6g}", name,
                              isovalue, range[0], range[1]));
         }
+    }
+
+    // Inside is value >= isovalue: at the minimum everything is inside.
+    static bool has_surface(double isovalue, const std::array<double, 2>& range) {
+        return isovalue > range[0] && isovalue <= range[1];
+    }
+
+    // Pictures are empty though the other notes give no reason.
+    void note_what_hides(const Volume& volume, const std::array<double, 2>& range) const {
+        const bool thin = std::ranges::find(volume.dims, 1u) != volume.dims.end();
+        const bool surface = std::ranges::any_of(
+            frame.isovalues, [&](double isovalue) { return has_surface(isovalue, range); });
+        if (thin || !surface) return;
+        note(fmt::format("{}: only background: {}", volume.name,
+                         frame.clips.empty() ? "the camera sees no surface"
+                                             : "--clip leaves nothing that the camera sees"));
     }
 
     // The report says what was written, and how large it is.
@@ -331,24 +350,23 @@ struct Render : Command {
         const std::string path = difference_path(
             output == "-" ? default_output(arguments.inputs.front(), false) : outputs[index]);
         write_png(path, difference_picture(image, expected, tolerance));
-        fmt::print(stderr, "isorast: error: {} differs: {}; see {}\n", references[index],
-                   text_of(difference, image.size, tolerance), path);
+        print_error(fmt::format("{} differs: {}; see {}", references[index],
+                                text_of(difference, image.size, tolerance), path));
     }
 
     void print(const RenderReport& report) const {
-        FILE* out = output == "-" ? stderr : stdout;
-        if (json) {
-            fmt::print(out, "{}", text_of(cli::json_of(report)));
-        } else {
-            fmt::print(out, "{}{}", summary(report), stats ? stats_table(report) : "");
-        }
+        const std::string text = json ? text_of(cli::json_of(report))
+                                      : summary(report) + (stats ? stats_table(report) : "");
+        if (output == "-")
+            print_message(text);
+        else
+            cli::print(text);
     }
 
     static bool print_validation(const Gpu& gpu) {
         const auto messages = gpu.validation_messages();
-        for (const std::string& message : messages) {
-            fmt::print(stderr, "isorast: error: validation: {}\n", message);
-        }
+        for (const std::string& message : messages)
+            print_error("validation: " + message);
         return !messages.empty();
     }
 };

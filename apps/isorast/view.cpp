@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -84,6 +85,13 @@ ClipPlane plane_of(const ClipArgument& clip, const Volume& volume) {
     return {{sign * row.x, sign * row.y, sign * row.z}, sign * (value - row.w)};
 }
 
+std::string why_no_length(const std::string& text) {
+    char* end = nullptr;
+    const double length = std::strtod(text.c_str(), &end);
+    if (*end == '\0' && length > 0 && std::isfinite(length)) return "";
+    return "expected a length greater than 0, found " + text;
+}
+
 }  // namespace
 
 void ViewArguments::add_to(CLI::App& app) {
@@ -120,7 +128,7 @@ void ViewArguments::add_stereo_to(CLI::App& app) {
         app.add_option_function<double>(
                name, [&length](double value) { length = value; }, help)
             ->type_name("LENGTH")
-            ->check(CLI::PositiveNumber.description(""))
+            ->check(CLI::Validator(why_no_length, ""))
             ->group(GROUP);
     };
     add_length("--eye-separation",

@@ -240,7 +240,7 @@ Volume make_procedural(std::string_view name, uint32_t time_step) {
     return Parser(name).parse(time_step);
 }
 
-void sample(Volume& volume) {
+void sample(Volume& volume) try {
     if (!volume.bytes.span().empty()) return;
     if (!volume.field)
         throw Error(fmt::format("{}: expected voxels or a formula, found neither", volume.name));
@@ -258,6 +258,11 @@ void sample(Volume& volume) {
     }
     threads.clear();  // joins
     volume.bytes = VoxelBytes::own(std::move(bytes));
+} catch (const std::bad_alloc&) {
+    throw Error(
+        fmt::format("{}: expected memory for its voxels, {} bytes, found less; choose a smaller "
+                    "size",
+                    volume.name, volume.byte_count()));
 }
 
 }  // namespace isorast

@@ -92,7 +92,8 @@ std::array<double, 3> Affine::operator()(double i, double j, double k) const {
 std::array<double, 3> Affine::spacing() const {
     std::array<double, 3> lengths{};
     for (int column = 0; column < 3; ++column)
-        lengths[column] = std::hypot(m[0][column], m[1][column], m[2][column]);
+        // Not at once: that would be NaN where an entry is infinite.
+        lengths[column] = std::hypot(std::hypot(m[0][column], m[1][column]), m[2][column]);
     return lengths;
 }
 
@@ -127,13 +128,28 @@ uint64_t checked_byte_count(const Volume& volume) {
 
 namespace {
 
-bool invertible(const Affine& affine) {
-    for (const auto& row : affine.m)
-        for (const double entry : row)
-            if (!std::isfinite(entry)) return false;
-    // Relative to the spacing, so that metres and micrometres pass alike.
+// What is wrong with the affine, and what helps; empty where it can be inverted.
+std::string why_not_invertible(const Affine& affine) {
+    const auto& m = affine.m;
+    for (int row = 0; row < 3; ++row)
+        if (!std::isfinite(m[row][3]))
+            return fmt::format(
+                "its origin is not finite: {}, {}, {}; correct it where the file gives it", m[0][3],
+                m[1][3], m[2][3]);
     const auto [x, y, z] = affine.spacing();
-    return std::abs(affine.determinant()) > 1e-9 * x * y * z;
+    const double product = x * y * z;
+    if (!(product > 0) || !std::isfinite(product))
+        return fmt::format("spacing {} x {} x {}; give the spacing", x, y, z);
+    // Relative to the spacing, so that metres and micrometres pass alike.
+    if (std::abs(affine.determinant()) > 1e-9 * product) return "";
+    const auto direction = [&](int column) {
+        return fmt::format("({}, {}, {})", m[0][column] + 0., m[1][column] + 0.,
+                           m[2][column] + 0.);  // -0 + 0 is 0
+    };
+    return fmt::format(
+        "its axes have the directions {}, {} and {}, which lie in one plane; correct them where "
+        "the file gives them",
+        direction(0), direction(1), direction(2));
 }
 
 }  // namespace
@@ -145,12 +161,9 @@ void check(const Volume& volume) {
         throw Error(fmt::format("{}: expected {} bytes for {}x{}x{} {}, found {}", volume.name,
                                 expected, volume.dims[0], volume.dims[1], volume.dims[2],
                                 name_of(volume.type), found));
-    if (!invertible(volume.affine))
+    if (const std::string why = why_not_invertible(volume.affine); !why.empty())
         throw Error(
-            fmt::format("{}: the voxel-to-world affine cannot be inverted (spacing "
-                        "{} x {} x {}); give the spacing",
-                        volume.name, volume.affine.spacing()[0], volume.affine.spacing()[1],
-                        volume.affine.spacing()[2]));
+            fmt::format("{}: the voxel-to-world affine cannot be inverted: {}", volume.name, why));
     if (!std::isfinite(volume.slope) || !std::isfinite(volume.intercept) || volume.slope == 0)
         throw Error(fmt::format("{}: values cannot be raw * {} + {}", volume.name, volume.slope,
                                 volume.intercept));

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The command line from outside: exit codes, messages, help, files. Usage: cli_test.py ISORAST [test...]"""
+import gzip
 import json
 import os
 import struct
@@ -52,6 +53,12 @@ class CommandLine(unittest.TestCase):
             self.assertRegex(err, r"\Aisorast: error: [^\n]+\nTry: isorast [^\n]*--help\n\Z")
             self.assertEqual(done.stdout, b"")
         return done.stdout if binary else done.stdout.decode(), err
+
+
+    def shell(self, command, *words):
+        """Runs the program as "$@" in a shell's command; returns what it did."""
+        return subprocess.run(["sh", "-c", command, "sh", ISORAST, *words], cwd=self.folder.name,
+                              capture_output=True, timeout=300)
 
 
 class Usage(CommandLine):
@@ -115,6 +122,19 @@ class Usage(CommandLine):
                     _, err = self.isorast("render", "sphere:8", f"{option}={value}", code=2)
                     self.assertIn(option, err)
 
+    def test_a_length_that_is_none(self):
+        for option in ["--eye-separation", "--convergence"]:
+            for found in ["0", "-1", "near", "inf", "nan", "1e999", "1m"]:
+                _, err = self.isorast("render", "sphere:8", option, found, code=2)
+                self.assertEqual(err.splitlines()[0],
+                                 f"isorast: error: {option}: expected a length greater than 0, found {found}")
+
+    def test_a_rasterizer_that_is_none(self):
+        words = "auto (default), hardware or compute"
+        self.assertIn(words, self.isorast("render", "--help")[0])
+        self.assertIn(f'expected {words}; found "automatic"',
+                      self.isorast("render", "sphere:8", "--rasterizer", "automatic", code=2)[1])
+
     def test_options_that_exclude_or_need_each_other(self):
         for words in [["--view", "+x", "--azimuth", "3"], ["--camera-position", "1,2,3", "--roll", "3"],
                       ["--camera-target", "1,2,3"], ["--tolerance", "3"], ["-o", "-", "--json"],
@@ -125,7 +145,37 @@ class Usage(CommandLine):
     def test_missing_values(self):
         self.assertIn("INPUT", self.isorast("render", code=2)[1])
         self.isorast("render", "sphere:8", "--iso", code=2)
+        for option in ["--iso", "--time", "--color", "--view"]:
+            _, err = self.isorast("render", "sphere:8", f"{option}=", "-o", "x.png", code=2)
+            self.assertEqual(err, f"isorast: error: {option}: expected a value after '='\nTry: isorast render --help\n")
+        self.isorast("--iso=", "sphere:8", code=2)
         self.isorast("compare", "a.png", code=2)
+
+
+class Streams(CommandLine):
+    def test_output_that_cannot_be_written(self):
+        self.write("a.png", png(8, 4, [10, 20, 30, 255]))
+        for words in [["--version"], ["--help"], ["render", "--help"], ["info", "sphere:8"],
+                      ["info", "sphere:8", "--json"], ["compare", "a.png", "a.png"]]:
+            for redirection, why in [(">/dev/full", "No space left on device"), (">&-", "Bad file descriptor")]:
+                with self.subTest(words=words, redirection=redirection):
+                    done = self.shell(f'"$@" {redirection}', *words)
+                    self.assertEqual(done.returncode, 1)
+                    self.assertEqual(done.stderr.decode(),
+                                     f"isorast: error: standard output: cannot be written: {why}\n")
+
+    def test_errors_that_cannot_be_written(self):
+        for redirection in ["2>/dev/full", "2>&-", "<&- >&- 2>&-"]:
+            self.assertEqual(self.shell(f'"$@" {redirection}', "info", "none.raw").returncode, 1)
+            self.assertEqual(self.shell(f'"$@" {redirection}', "frobnicate").returncode, 2)
+            self.assertEqual(self.shell(f'"$@" {redirection}').returncode, 2)
+
+    def test_errors_are_one_line_of_text(self):
+        _, err = self.isorast("info", "a\nb\x1b[31m\tü\x7f.raw", code=1)
+        self.assertTrue(err.startswith(r"isorast: error: a\nb\x1b[31m\tü\x7f.raw: there is no such file"), err)
+        self.assertEqual(err.count("\n"), 1)
+        self.assertIn(r"a\nb", self.isorast("a\nb", code=2)[1])
+        self.assertIn(r"a\rb", self.isorast("render", "sphere:8", "--color", "a\rb", code=2)[1])
 
 
 class Compare(CommandLine):
@@ -212,11 +262,18 @@ class Info(CommandLine):
             self.assertRegex(err, r"\Aisorast: error: [^\n]+\n\Z")
 
 
-    def test_output_that_cannot_be_written(self):
-        with open("/dev/full", "wb") as full:
-            done = subprocess.run([ISORAST, "info", "sphere:8"], stdout=full, stderr=subprocess.PIPE, timeout=60)
-        self.assertEqual(done.returncode, 1)
-        self.assertIn(b"standard output", done.stderr)
+    def test_memory_that_is_not_there(self):
+        limited = 'ulimit -v 250000; "$@"'
+        if self.shell(limited, "--version").returncode != 0:
+            self.skipTest("this build needs more memory to start")
+        self.write("zeros.nrrd", b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1024 1024 256\nencoding: gzip\n\n"
+                   + gzip.compress(bytes(1 << 28), 1))
+        for name, size, helps in [("sphere:4096", 4 << 36, "choose a smaller size"),
+                                  ("zeros.nrrd", 1 << 28, "one uncompressed little-endian file needs none")]:
+            done = self.shell(limited, "info", name)
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(done.stderr.decode(), f"isorast: error: {name}: expected memory for its voxels, "
+                             f"{size} bytes, found less; {helps}\n")
 
 
 class Devices(CommandLine):
@@ -261,6 +318,19 @@ class Render(CommandLine):
         out, err = self.isorast("render", *self.words, "sphere:16", "-o", "-", binary=True)
         self.assertEqual(out, self.read("a.png"))
         self.assertIn("96x64", err)
+
+    def test_streams_that_cannot_be_written(self):
+        words = ["render", *self.words, "gyroid:16:steps=2", "--iso", "0", "-o"]
+        self.isorast(*words, "good.png")
+        for redirection in ["2>/dev/full", "2>&-"]:
+            self.assertEqual(self.shell(f'"$@" {redirection}', *words, "out.png").returncode, 0)
+            self.assertEqual(self.read("out.png"), self.read("good.png"))
+            os.remove(self.path("out.png"))
+            self.assertEqual(self.shell(f'"$@" {redirection}', *words, "-").stdout, self.read("good.png"))
+        for redirection in [">/dev/full", ">&-"]:
+            done = self.shell(f'"$@" {redirection}', *words, "-")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(b"isorast: error: standard output: cannot be written: ", done.stderr)
 
     def test_json(self):
         found = json.loads(self.render("torus:24", "--json", "--repeat", "3", "-o", "t.png")[0])
@@ -309,6 +379,26 @@ class Render(CommandLine):
         self.isorast("compare", "0.png", "whole.png", code=1)
         self.render("sphere:17", "--clip", "y>0", "--clip", "x<0.2,z<0.2", "-o", "three.png")
         self.isorast("compare", "0.png", "three.png", code=1)
+
+    def test_a_surface_out_of_view_is_noted(self):
+        clipped = "isorast: note: sphere:16: only background: --clip leaves nothing that the camera sees\n"
+        for words in [[], ["--background", "#804020"], ["--transparent"], ["--stereo", "side-by-side"],
+                      ["--stereo", "anaglyph", "--background", "#804020"], ["--shading", "depth"], ["--repeat", "2"]]:
+            with self.subTest(words=words):
+                self.assertEqual(self.render("sphere:16", "--clip", "x>1e9", *words, "-o", "a.png")[1], clipped)
+        _, err = self.render("sphere:16", "--camera-position", "9,0,0", "--camera-target", "10,0,0")
+        self.assertEqual(err, "isorast: note: sphere:16: only background: the camera sees no surface\n")
+        for words in [["--clip", "x>0"], ["--background", "#804020"], ["--stereo", "anaglyph"], ["--transparent"]]:
+            self.assertEqual(self.render("sphere:16", *words)[1], "")
+        # One reason is enough.
+        _, err = self.render("sphere:16", "--clip", "x>1e9", "--iso", "9")
+        self.assertRegex(err, r"\Aisorast: note: sphere:16: no surface at 9: [^\n]+\n\Z")
+        # Of a series, some pictures may be empty.
+        for step, value in enumerate([0, 200]):
+            self.write(f"t{step}_8x8x8_uint8.raw", bytes(255 if at == 0 else value if at == 292 else 10 for at in range(512)))
+        _, err = self.render("t0_8x8x8_uint8.raw", "t1_8x8x8_uint8.raw", "--time", "all", "--iso", "100",
+                             "--clip", "i>2", "-o", "f{frame}.png")
+        self.assertEqual(err, "")
 
     def test_culling_changes_no_pixel(self):
         for word in ["off", "hiz", "auto"]:

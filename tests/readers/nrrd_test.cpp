@@ -145,6 +145,21 @@ TEST(Nrrd, Spacings) {
     expect_like_itk(path);
 }
 
+// What the message says helps does help.
+TEST(Nrrd, AGivenSpacingReplacesOneThatIsNone) {
+    const Scratch scratch;
+    LoadOptions options;
+    options.spacing = {2, 3, 4};
+    for (const char* spacings : {"0 1 1", "inf 1 1", "1 -inf 1", "1 1 1e300"})
+        expect_affine(
+            load_volume(with_fields(scratch, fmt::format("spacings: {}\n", spacings)), options),
+            {{{2, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 4, 0}}});
+    const std::string flat = "space directions: (1,0,0) (1,0,0) (0,0,1)\n";
+    EXPECT_NE(error_of(with_fields(scratch, flat), options)
+                  .find("directions (2, 0, 0), (3, 0, 0) and (0, 0, 4), which lie in one plane"),
+              std::string::npos);
+}
+
 TEST(Nrrd, AxisRanges) {
     const Scratch scratch;
     for (const char* fields : {"spacings: 0.5 2 3\naxis mins: 1 2 3\ncenters: cell cell cell\n",

@@ -239,12 +239,20 @@ void set_time(Volume& volume, uint64_t steps, const LoadOptions& options) {
     fail(volume.name, "{}", error.what());
 }
 
+[[noreturn]] void fail_for_memory(const Volume& volume) {
+    fail(
+        volume.name,
+        "expected memory for its voxels, {} bytes, found less; one uncompressed little-endian file "
+        "needs none",
+        volume.byte_count());
+}
+
 void read_voxels(Volume& volume, const DataSource& source) try {
     read_parts(volume, source);
 } catch (const Error& error) {
     rethrow_for(volume, error);
 } catch (const std::bad_alloc&) {
-    fail(volume.name, "there is not enough memory for its voxels");
+    fail_for_memory(volume);
 }
 
 StepReader::StepReader(const Volume& header, DataSource source)
@@ -281,7 +289,7 @@ void StepReader::inflate_step(Volume& volume) try {
     rethrow_for(volume, error);
 } catch (const std::bad_alloc&) {
     stream_.reset();
-    fail(volume.name, "there is not enough memory for its voxels");
+    fail_for_memory(volume);
 }
 
 std::string beside(const std::string& header, std::string_view name) {

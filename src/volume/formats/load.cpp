@@ -45,7 +45,8 @@ Reader reader_for(const std::string& path, const LoadOptions& options) {
          known_formats());
 }
 
-// Keeps the axes' directions. An axis without one (length 0) takes that of the world axis.
+// Keeps the axes' directions. An axis without one (length 0, or not finite) takes that of the world
+// axis.
 void set_spacing(Volume& volume, std::array<double, 3> spacing) {
     const auto lengths = volume.affine.spacing();
     for (int axis = 0; axis < 3; ++axis) {
@@ -53,7 +54,7 @@ void set_spacing(Volume& volume, std::array<double, 3> spacing) {
             fail(volume.name, "spacing must be positive, found {}", spacing[axis]);
         for (int row = 0; row < 3; ++row) {
             double& entry = volume.affine.m[row][axis];
-            if (lengths[axis] > 0)
+            if (lengths[axis] > 0 && std::isfinite(lengths[axis]))
                 entry *= spacing[axis] / lengths[axis];
             else
                 entry = row == axis ? spacing[axis] : 0;

@@ -61,16 +61,34 @@ std::vector<std::optional<std::vector<double>>> vectors(const NrrdHeader& header
     return result;
 }
 
+// How many numbers a vector has: as many as the space has dimensions. Without a space, 0.
+size_t space_dimension(const NrrdHeader& header) {
+    if (header.optional("space")) return 3;
+    const auto text = header.optional("spacedimension");
+    if (!text) return 0;
+    const auto dimension = parse_number<uint32_t>(*text);
+    if (!dimension)
+        fail(header.path, "space dimension: expected a whole number, found {}", quoted(*text));
+    return *dimension;
+}
+
 void read_directions(const NrrdHeader& header, std::vector<Axis>& axes) {
     const auto directions = vectors(header, "spacedirections");
     if (directions.size() != axes.size())
         fail(header.path, "space directions: expected {} vectors, one for each axis, found {}",
              axes.size(), directions.size());
+    size_t expected = space_dimension(header);
     for (size_t i = 0; i < axes.size(); ++i) {
         axes[i].direction = directions[i];
-        if (directions[i] && directions[i]->size() != 2 && directions[i]->size() != 3)
+        if (!directions[i]) continue;
+        const size_t found = directions[i]->size();
+        if (found != 2 && found != 3)
             fail(header.path, "space directions: expected vectors of 2 or 3 numbers, found {}",
-                 directions[i]->size());
+                 found);
+        if (expected == 0) expected = found;
+        if (found != expected)
+            fail(header.path, "space directions: expected vectors of {} numbers, found {} in {}",
+                 expected, found, quoted(header.required("spacedirections")));
     }
 }
 
@@ -169,6 +187,9 @@ Affine affine_of(const NrrdHeader& header, const std::vector<Axis>& spatial) {
     }
     if (spatial.size() == 2 && spatial[0].direction) {
         const auto normal = unit_normal(affine);
+        if (!std::isfinite(normal[0] + normal[1] + normal[2]))
+            fail(header.path, "space directions: expected two that span a plane, found {}",
+                 quoted(header.required("spacedirections")));
         set_column(affine, 2, {normal.begin(), normal.end()});
     }
     if (header.optional("spaceorigin")) {
