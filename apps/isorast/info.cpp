@@ -120,6 +120,9 @@ struct Info : Command {
                        {"time_step", volume.time_step},
                        {"not_finite", values.not_finite}};
         if (values.finite == 0) return described;
+        if (values.no_data)
+            described.update(
+                Json{{"no_data", *values.no_data}, {"without_data", values.without_data}});
         described.update(Json{{"minimum", values.minimum},
                               {"maximum", values.maximum},
                               {"mean", values.mean},
@@ -163,6 +166,9 @@ struct Info : Command {
                                            values.not_finite, volume.voxel_count()));
         }
         if (values.finite == 0) return line("values", "none that is finite");
+        if (values.no_data)
+            line("no data", fmt::format("{:.6g}, {} of {} voxels: left out below", *values.no_data,
+                                        values.without_data, volume.voxel_count()));
         line("values", fmt::format("{:.6g} to {:.6g}{}", values.minimum, values.maximum,
                                    with_units(volume.value_units)));
         line("mean, sd", fmt::format("{:.6g}, {:.6g}", values.mean, values.standard_deviation));

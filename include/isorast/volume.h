@@ -116,8 +116,13 @@ void sample(Volume& volume);
 // Throws Error unless dims are positive, their product is representable, and bytes (if any) match.
 void check(const Volume& volume);
 
-// One pass over the voxels, in data units.
+// Of the voxels, in data units.
 struct Statistics {
+    // The least or the greatest value, where it is so far from all others that it must stand for
+    // "no data": ten times as far as these lie apart, and they are not only a few. It counts for
+    // nothing below.
+    std::optional<double> no_data;
+    uint64_t without_data = 0;                                          // voxels with that value
     double minimum = 0, maximum = 0, mean = 0, standard_deviation = 0;  // over finite voxels
     uint64_t finite = 0, not_finite = 0;
     std::vector<uint64_t> histogram;  // equal bins from minimum to maximum

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Range, moments and histogram of a volume. 8 and 16 bit voxels are counted per level, and all else
-// follows from the counts; wider types take two passes. Threads share the work in fixed chunks, so
+// follows from the counts; wider types take two passes, or three with a value that stands for "no
+// data". Threads share the work in fixed chunks, so
 // the result does not depend on their number. Moments of chunks are merged as in Chan et al. 1979.
 #include <isorast/error.h>
 #include <isorast/volume.h>
@@ -11,6 +12,7 @@
 #include <limits>
 #include <thread>
 #include <type_traits>
+#include <utility>
 
 #include "volume/voxels.h"
 
@@ -39,10 +41,25 @@ unsigned workers_for(uint64_t count) {
                                                       std::max<uint64_t>(chunks, 1)));
 }
 
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+
+// "No data" lies at least so many times as far from other values as these lie apart, and these fall
+// into so many bins of the histogram: labels and the like are data.
+constexpr double FAR = 10;
+constexpr ptrdiff_t FEW = 16;
+
 struct Moments {
-    double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum;
+    double minimum = INFINITE, maximum = -INFINITE;
+    double second = INFINITE, last_but_one = -INFINITE;  // next to these
     double mean = 0, squares = 0;  // squares: sum of squared distances from the mean
     uint64_t finite = 0, not_finite = 0;
+
+    void widen(double value) {
+        if (value < second && value != minimum)
+            second = value < minimum ? std::exchange(minimum, value) : value;
+        if (value > last_but_one && value != maximum)
+            last_but_one = value > maximum ? std::exchange(maximum, value) : value;
+    }
 
     void add(const Moments& other) {
         not_finite += other.not_finite;
@@ -52,14 +69,22 @@ struct Moments {
         mean += distance * b / (a + b);
         squares += other.squares + distance * distance * a * b / (a + b);
         finite += other.finite;
-        minimum = std::min(minimum, other.minimum);
-        maximum = std::max(maximum, other.maximum);
+        for (const double value : {other.minimum, other.maximum, other.second, other.last_but_one})
+            if (std::isfinite(value)) widen(value);
+    }
+
+    std::optional<double> far_value() const {
+        if (maximum - second > 0 && second - minimum > FAR * (maximum - second)) return minimum;
+        if (last_but_one - minimum > 0 && maximum - last_but_one > FAR * (last_but_one - minimum))
+            return maximum;
+        return std::nullopt;
     }
 };
 
 // Sums are taken relative to the chunk's first finite value, which keeps their cancellation small.
 template <class T>
-Moments moments_of(const Volume& volume, uint64_t first, uint64_t last) {
+Moments moments_of(const Volume& volume, uint64_t first, uint64_t last,
+                   std::optional<double> left_out) {
     const std::byte* bytes = volume.bytes.span().data();
     Moments moments;
     double shift = 0, sum = 0, squares = 0;
@@ -69,11 +94,11 @@ Moments moments_of(const Volume& volume, uint64_t first, uint64_t last) {
             ++moments.not_finite;
             continue;
         }
+        if (value == left_out) continue;
         if (moments.finite++ == 0) shift = value;
         sum += value - shift;
         squares += (value - shift) * (value - shift);
-        moments.minimum = std::min(moments.minimum, value);
-        moments.maximum = std::max(moments.maximum, value);
+        moments.widen(value);
     }
     if (moments.finite == 0) return moments;
     const auto count = static_cast<double>(moments.finite);
@@ -111,6 +136,27 @@ void take(Statistics& result, const Moments& moments) {
     result.standard_deviation = std::sqrt(moments.squares / static_cast<double>(moments.finite));
 }
 
+// Calls histogram = measure(left_out, moments) for all values, and once more without a far one if
+// there is such.
+template <class Measure>
+Statistics without_far_value(Measure&& measure) {
+    Moments all;
+    Statistics result;
+    result.histogram = measure(std::nullopt, all);
+    take(result, all);
+    const std::optional<double> no_data = all.far_value();
+    if (!no_data) return result;
+    Moments others;
+    const std::vector<uint64_t> histogram = measure(no_data, others);
+    const auto bins = std::ranges::count_if(histogram, [](uint64_t count) { return count != 0; });
+    if (bins < FEW) return result;
+    take(result, others);
+    result.histogram = histogram;
+    result.no_data = no_data;
+    result.without_data = all.finite - others.finite;
+    return result;
+}
+
 // How often each raw level of an 8 or 16 bit type occurs, level 0 being the type's smallest value.
 template <class T>
 std::vector<uint64_t> count_levels(const Volume& volume) {
@@ -141,46 +187,48 @@ Statistics from_levels(const Volume& volume, uint32_t bins) {
         return (static_cast<double>(level) + std::numeric_limits<T>::min()) * volume.slope +
                volume.intercept;
     };
-    Moments moments;
-    for (size_t level = 0; level < counts.size(); ++level)
-        if (counts[level] != 0)
-            moments.add({value(level), value(level), value(level), 0, counts[level], 0});
-    Statistics result;
-    take(result, moments);
-    result.histogram.resize(bins);
-    const Binning bin(result.minimum, result.maximum, bins);
-    for (size_t level = 0; level < counts.size(); ++level)
-        if (counts[level] != 0) result.histogram[bin(value(level))] += counts[level];
-    return result;
+    return without_far_value([&](std::optional<double> left_out, Moments& moments) {
+        const auto for_levels = [&](auto&& take) {
+            for (size_t level = 0; level < counts.size(); ++level)
+                if (counts[level] != 0 && value(level) != left_out)
+                    take(value(level), counts[level]);
+        };
+        for_levels([&](double at, uint64_t count) {
+            moments.add({.minimum = at, .maximum = at, .mean = at, .finite = count});
+        });
+        std::vector<uint64_t> histogram(bins);
+        const Binning bin(moments.minimum, moments.maximum, bins);
+        for_levels([&](double at, uint64_t count) { histogram[bin(at)] += count; });
+        return histogram;
+    });
 }
 
 template <class T>
 Statistics from_voxels(const Volume& volume, uint32_t bins) {
     const uint64_t count = volume.voxel_count();
     const unsigned workers = workers_for(count);
-    std::vector<Moments> chunks((count + CHUNK - 1) / CHUNK);
-    for_chunks(count, workers, [&](unsigned, uint64_t chunk, uint64_t first, uint64_t last) {
-        chunks[chunk] = moments_of<T>(volume, first, last);
-    });
-    Moments moments;
-    for (const Moments& chunk : chunks)
-        moments.add(chunk);
-    Statistics result;
-    take(result, moments);
+    return without_far_value([&](std::optional<double> left_out, Moments& moments) {
+        std::vector<Moments> chunks((count + CHUNK - 1) / CHUNK);
+        for_chunks(count, workers, [&](unsigned, uint64_t chunk, uint64_t first, uint64_t last) {
+            chunks[chunk] = moments_of<T>(volume, first, last, left_out);
+        });
+        for (const Moments& chunk : chunks)
+            moments.add(chunk);
 
-    const Binning bin(result.minimum, result.maximum, bins);
-    std::vector<std::vector<uint64_t>> counts(workers, std::vector<uint64_t>(bins));
-    const std::byte* bytes = volume.bytes.span().data();
-    for_chunks(count, workers, [&](unsigned worker, uint64_t, uint64_t first, uint64_t last) {
-        for (uint64_t index = first; index < last; ++index) {
-            const double value = load_voxel<T>(bytes, index) * volume.slope + volume.intercept;
-            if (std::isfinite(value)) ++counts[worker][bin(value)];
-        }
+        const Binning bin(moments.minimum, moments.maximum, bins);
+        std::vector<std::vector<uint64_t>> counts(workers, std::vector<uint64_t>(bins));
+        const std::byte* bytes = volume.bytes.span().data();
+        for_chunks(count, workers, [&](unsigned worker, uint64_t, uint64_t first, uint64_t last) {
+            for (uint64_t index = first; index < last; ++index) {
+                const double value = load_voxel<T>(bytes, index) * volume.slope + volume.intercept;
+                if (std::isfinite(value) && value != left_out) ++counts[worker][bin(value)];
+            }
+        });
+        std::vector<uint64_t> histogram(bins);
+        for (const auto& table : counts)
+            add_counts(histogram, table);
+        return histogram;
     });
-    result.histogram.resize(bins);
-    for (const auto& table : counts)
-        add_counts(result.histogram, table);
-    return result;
 }
 
 // A formula's voxels, for a volume that has not been sampled.

@@ -254,6 +254,38 @@ TEST(StatisticsTest, ExtremeRanges) {
     EXPECT_NEAR(offset.standard_deviation, std::sqrt(2.0 / 3), 1e-9);
 }
 
+template <class T>
+Statistics with_fill(VoxelType type, T fill) {
+    std::vector<T> values;
+    for (int i = 0; i < 1000; ++i)
+        values.push_back(i % 3 == 0 ? fill : static_cast<T>(i % 100));
+    return statistics(row_of(type, values));
+}
+
+TEST(StatisticsTest, AFarValueIsNoData) {
+    const auto expect_left_out = [](const Statistics& found, double fill) {
+        EXPECT_EQ(found.no_data, fill);
+        EXPECT_EQ(found.without_data, 334u);
+        EXPECT_EQ(found.finite, 666u);
+        EXPECT_EQ(found.minimum, 0);
+        EXPECT_EQ(found.maximum, 99);
+        EXPECT_NEAR(found.mean, 49.5, 0.1);
+        EXPECT_NEAR(found.percentile(50), 49.5, 1);
+        EXPECT_EQ(std::accumulate(found.histogram.begin(), found.histogram.end(), uint64_t{0}),
+                  666u);
+    };
+    constexpr int32_t lowest = std::numeric_limits<int32_t>::min();
+    expect_left_out(with_fill<int32_t>(VoxelType::i32, lowest), lowest);
+    expect_left_out(with_fill<float>(VoxelType::f32, 1e30f), double(1e30f));
+    expect_left_out(with_fill<double>(VoxelType::f64, -9999), -9999);
+    expect_left_out(with_fill<int16_t>(VoxelType::i16, -32768), -32768);
+    expect_left_out(with_fill<uint16_t>(VoxelType::u16, 65535), 65535);
+    // Nearer ones, labels and constants are data.
+    EXPECT_FALSE(with_fill<float>(VoxelType::f32, -500).no_data);
+    EXPECT_FALSE(statistics(row_of<uint16_t>(VoxelType::u16, {0, 100, 101, 102, 0, 101})).no_data);
+    EXPECT_FALSE(statistics(row_of<uint8_t>(VoxelType::u8, {0, 0, 255, 255})).no_data);
+}
+
 TEST(StatisticsTest, FormulasAreSampled) {
     const Statistics sphere = statistics(make_procedural("sphere:16"));
     EXPECT_EQ(sphere.finite, 4096u);
