@@ -126,9 +126,11 @@ struct Statistics {
     double minimum = 0, maximum = 0, mean = 0, standard_deviation = 0;  // over finite voxels
     uint64_t finite = 0, not_finite = 0;
     std::vector<uint64_t> histogram;  // equal bins from minimum to maximum
+    // Values at equal steps of rank, from minimum to maximum; of types wider than 16 bits, of a
+    // million voxels from all over the volume.
+    std::vector<double> ranked;
 
-    // The value below which `percent` (0 to 100) of the finite voxels lie, interpolated in the
-    // histogram.
+    // The value below which `percent` (0 to 100) of the finite voxels lie.
     double percentile(double percent) const;
 };
 // Throws Error for 0 bins, and as check() does.

@@ -15,8 +15,34 @@ namespace {
 
 constexpr size_t MOST_ISOVALUES = 32;
 
+// Where all but a few values lie.
+struct Core {
+    double low, high;
+};
+
+Core core_of(const Statistics& statistics) {
+    const Core core{statistics.percentile(0.05), statistics.percentile(99.95)};
+    const double all = statistics.maximum / 2 - statistics.minimum / 2;
+    if (core.high > core.low && (core.high / 2 - core.low / 2) * 10 < all) return core;
+    return {statistics.minimum, statistics.maximum};
+}
+
+// Of these; values beyond count in the last bins.
+std::vector<uint64_t> histogram_of(const Statistics& statistics, const Core& core) {
+    if (core.low == statistics.minimum && core.high == statistics.maximum)
+        return statistics.histogram;
+    std::vector<uint64_t> histogram(256);
+    for (const double value : statistics.ranked) {
+        const double t = std::clamp((value - core.low) / (core.high - core.low), 0.0, 1.0);
+        ++histogram[std::min(size_t(t * 256), size_t{255})];
+    }
+    return histogram;
+}
+
+// A few values far from all others, such as noise or metal, would draw the threshold to them.
 double otsu(const Statistics& statistics) {
-    const std::vector<uint64_t>& histogram = statistics.histogram;
+    const Core core = core_of(statistics);
+    const std::vector<uint64_t> histogram = histogram_of(statistics, core);
     double total = 0, weighted_total = 0;
     for (size_t bin = 0; bin < histogram.size(); ++bin) {
         total += static_cast<double>(histogram[bin]);
@@ -40,7 +66,7 @@ double otsu(const Statistics& statistics) {
     // Empty bins leave the variance as it is: cut in the middle of the gap.
     const double t = (static_cast<double>(first_best + last_best) / 2 + 1) /
                      static_cast<double>(histogram.size());
-    return statistics.minimum * (1 - t) + statistics.maximum * t;
+    return core.low * (1 - t) + core.high * t;
 }
 
 // Whole and finite, or nothing.

@@ -19,7 +19,9 @@
 namespace isorast {
 namespace {
 
-constexpr uint64_t CHUNK = 1 << 20;  // voxels
+constexpr uint64_t CHUNK = 1 << 20;    // voxels
+constexpr uint64_t SAMPLED = 1 << 20;  // voxels of wide types that are ranked, about
+constexpr uint64_t RANKS = 4096;       // steps
 
 // Calls work(worker, chunk, first, last) for every chunk, on all cores.
 template <class Work>
@@ -136,22 +138,34 @@ void take(Statistics& result, const Moments& moments) {
     result.standard_deviation = std::sqrt(moments.squares / static_cast<double>(moments.finite));
 }
 
-// Calls histogram = measure(left_out, moments) for all values, and once more without a far one if
-// there is such.
+// At RANKS + 1 equal steps of rank.
+template <class ValueAt>
+std::vector<double> ranks_of(uint64_t count, ValueAt&& value_at) {
+    std::vector<double> ranked;
+    for (uint64_t i = 0; i <= RANKS && count > 0; ++i)
+        ranked.push_back(value_at(static_cast<uint64_t>(
+            std::lround(static_cast<double>(i) / RANKS * static_cast<double>(count - 1)))));
+    return ranked;
+}
+
+// Calls histogram = measure(left_out, moments, ranked) for all values, and once more without a far
+// one if there is such.
 template <class Measure>
 Statistics without_far_value(Measure&& measure) {
     Moments all;
     Statistics result;
-    result.histogram = measure(std::nullopt, all);
+    result.histogram = measure(std::nullopt, all, result.ranked);
     take(result, all);
     const std::optional<double> no_data = all.far_value();
     if (!no_data) return result;
     Moments others;
-    const std::vector<uint64_t> histogram = measure(no_data, others);
+    std::vector<double> ranked;
+    const std::vector<uint64_t> histogram = measure(no_data, others, ranked);
     const auto bins = std::ranges::count_if(histogram, [](uint64_t count) { return count != 0; });
     if (bins < FEW) return result;
     take(result, others);
     result.histogram = histogram;
+    result.ranked = ranked;
     result.no_data = no_data;
     result.without_data = all.finite - others.finite;
     return result;
@@ -187,27 +201,56 @@ Statistics from_levels(const Volume& volume, uint32_t bins) {
         return (static_cast<double>(level) + std::numeric_limits<T>::min()) * volume.slope +
                volume.intercept;
     };
-    return without_far_value([&](std::optional<double> left_out, Moments& moments) {
-        const auto for_levels = [&](auto&& take) {
-            for (size_t level = 0; level < counts.size(); ++level)
-                if (counts[level] != 0 && value(level) != left_out)
-                    take(value(level), counts[level]);
-        };
-        for_levels([&](double at, uint64_t count) {
-            moments.add({.minimum = at, .maximum = at, .mean = at, .finite = count});
+    return without_far_value(
+        [&](std::optional<double> left_out, Moments& moments, std::vector<double>& ranked) {
+            const auto for_levels = [&](auto&& take) {
+                for (size_t level = 0; level < counts.size(); ++level)
+                    if (counts[level] != 0 && value(level) != left_out)
+                        take(value(level), counts[level]);
+            };
+            for_levels([&](double at, uint64_t count) {
+                moments.add({.minimum = at, .maximum = at, .mean = at, .finite = count});
+            });
+            std::vector<uint64_t> histogram(bins);
+            const Binning bin(moments.minimum, moments.maximum, bins);
+            std::vector<std::pair<double, uint64_t>> ascending;  // and how many of these and before
+            for_levels([&](double at, uint64_t count) {
+                histogram[bin(at)] += count;
+                ascending.emplace_back(at, count);
+            });
+            if (volume.slope < 0) std::ranges::reverse(ascending);
+            for (size_t i = 1; i < ascending.size(); ++i)
+                ascending[i].second += ascending[i - 1].second;
+            auto level = ascending.begin();
+            ranked = ranks_of(moments.finite, [&](uint64_t rank) {
+                while (level->second <= rank)
+                    ++level;
+                return level->first;
+            });
+            return histogram;
         });
-        std::vector<uint64_t> histogram(bins);
-        const Binning bin(moments.minimum, moments.maximum, bins);
-        for_levels([&](double at, uint64_t count) { histogram[bin(at)] += count; });
-        return histogram;
-    });
+}
+
+template <class T>
+std::vector<double> sorted_sample(const Volume& volume, std::optional<double> left_out) {
+    const std::byte* bytes = volume.bytes.span().data();
+    const uint64_t count = volume.voxel_count();
+    const uint64_t step = std::max(count / SAMPLED, uint64_t{1}) | 1;  // not always the same column
+    std::vector<double> values;
+    for (uint64_t index = 0; index < count; index += step) {
+        const double value = load_voxel<T>(bytes, index) * volume.slope + volume.intercept;
+        if (std::isfinite(value) && value != left_out) values.push_back(value);
+    }
+    std::ranges::sort(values);
+    return values;
 }
 
 template <class T>
 Statistics from_voxels(const Volume& volume, uint32_t bins) {
     const uint64_t count = volume.voxel_count();
     const unsigned workers = workers_for(count);
-    return without_far_value([&](std::optional<double> left_out, Moments& moments) {
+    return without_far_value([&](std::optional<double> left_out, Moments& moments,
+                                 std::vector<double>& ranked) {
         std::vector<Moments> chunks((count + CHUNK - 1) / CHUNK);
         for_chunks(count, workers, [&](unsigned, uint64_t chunk, uint64_t first, uint64_t last) {
             chunks[chunk] = moments_of<T>(volume, first, last, left_out);
@@ -227,6 +270,12 @@ Statistics from_voxels(const Volume& volume, uint32_t bins) {
         std::vector<uint64_t> histogram(bins);
         for (const auto& table : counts)
             add_counts(histogram, table);
+        std::vector<double> values = sorted_sample<T>(volume, left_out);
+        if (!values.empty()) {
+            values.front() = moments.minimum;
+            values.back() = moments.maximum;
+        }
+        ranked = ranks_of(values.size(), [&](uint64_t rank) { return values[rank]; });
         return histogram;
     });
 }
@@ -261,18 +310,12 @@ Statistics statistics(const Volume& volume, uint32_t bins) {
 }
 
 double Statistics::percentile(double percent) const {
-    const double wanted = std::clamp(percent, 0.0, 100.0) / 100 * static_cast<double>(finite);
-    double below = 0;
-    for (size_t bin = 0; bin < histogram.size(); ++bin) {
-        const auto count = static_cast<double>(histogram[bin]);
-        if (count > 0 && below + count >= wanted) {
-            const double t = (static_cast<double>(bin) + (wanted - below) / count) /
-                             static_cast<double>(histogram.size());
-            return minimum * (1 - t) + maximum * t;
-        }
-        below += count;
-    }
-    return maximum;
+    if (ranked.empty()) return maximum;
+    const double rank =
+        std::clamp(percent, 0.0, 100.0) / 100 * static_cast<double>(ranked.size() - 1);
+    const auto below = static_cast<size_t>(rank), above = std::min(below + 1, ranked.size() - 1);
+    const double t = rank - static_cast<double>(below);
+    return ranked[below] * (1 - t) + ranked[above] * t;
 }
 
 }  // namespace isorast

@@ -286,6 +286,33 @@ TEST(StatisticsTest, AFarValueIsNoData) {
     EXPECT_FALSE(statistics(row_of<uint8_t>(VoxelType::u8, {0, 0, 255, 255})).no_data);
 }
 
+// Few voxels far from all others, or a long tail, leave percentiles and thresholds where they were.
+TEST(StatisticsTest, OutliersDoNotMoveTheRest) {
+    std::vector<float> values;
+    for (int i = 0; i < 100000; ++i)
+        values.push_back(float(i % 4 == 0 ? 200 + i % 41 : i % 41));  // two plateaus
+    const Volume plain = row_of(VoxelType::f32, values);
+    const Statistics before = statistics(plain);
+    for (int i = 0; i < 5; ++i)
+        values[size_t(1000 * i)] = 1e5F - 7e3F * float(i);
+    const Volume hot = row_of(VoxelType::f32, values);
+    const Statistics after = statistics(hot);
+    EXPECT_FALSE(after.no_data);
+    EXPECT_NEAR(after.maximum, 1e5, 1e-6);
+    for (const double percent : {1.0, 25.0, 50.0, 90.0, 99.0})
+        EXPECT_NEAR(after.percentile(percent), before.percentile(percent), 1) << percent;
+    const double threshold = suggest_isovalue(hot, after);
+    EXPECT_GT(threshold, 40);
+    EXPECT_LT(threshold, 200);
+
+    std::vector<double> tail;
+    for (int i = 1; i <= 10000; ++i)
+        tail.push_back(std::exp(20.0 * i / 10000));
+    const Statistics skewed = statistics(row_of(VoxelType::f64, tail));
+    for (const double percent : {10.0, 50.0, 99.0})
+        EXPECT_NEAR(std::log(skewed.percentile(percent)), percent / 5, 0.01) << percent;
+}
+
 TEST(StatisticsTest, FormulasAreSampled) {
     const Statistics sphere = statistics(make_procedural("sphere:16"));
     EXPECT_EQ(sphere.finite, 4096u);
