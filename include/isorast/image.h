@@ -38,9 +38,9 @@ Difference compare(const Image& a, const Image& b, double tolerance = 0);
 // Error when sizes differ.
 Image difference_picture(const Image& a, const Image& b, double tolerance = 1);
 
-// PNG, 8 bits a channel, sRGB; `text` pairs become tEXt chunks. These need libpng: not in the core.
-// Throws Error for a picture without pixels or of other than 4 bytes a pixel, and for text keywords
-// of other than 1 to 79 characters.
+// PNG, 8 bits a channel, sRGB; `text` pairs become tEXt chunks, or iTXt where the value is UTF-8
+// but not ASCII. These need libpng: not in the core. Throws Error for a picture without pixels or
+// of other than 4 bytes a pixel, and for text keywords of other than 1 to 79 characters.
 std::vector<uint8_t> encode_png(const Image& image,
                                 const std::vector<std::pair<std::string, std::string>>& text = {});
 // The file appears whole or not at all. Throws Error too when it cannot be written.

@@ -8,10 +8,12 @@
 #include <png.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "image/whole_file.h"
+#include "volume/utf8.h"
 
 namespace isorast {
 namespace {
@@ -34,18 +36,29 @@ void append_big_endian(Bytes& bytes, uint32_t value) {
         bytes.push_back(static_cast<uint8_t>(value >> shift));
 }
 
-// A tEXt chunk: length, type, keyword, zero, text, checksum.
+void append(Bytes& bytes, std::string_view text) {
+    bytes.insert(bytes.end(), text.begin(), text.end());
+}
+
+bool is_ascii(std::string_view text) {
+    return std::ranges::all_of(text, [](char c) { return (c & 0x80) == 0; });
+}
+
+// Length, type, keyword, zero, text, checksum. In an iTXt chunk two zeros more say that the text is
+// not compressed, and one each ends its language and the translated keyword, which are empty.
 void append_text_chunk(Bytes& bytes, const std::string& keyword, const std::string& text) {
     if (keyword.empty() || keyword.size() > 79) {
         throw Error(fmt::format("PNG text keyword \"{}\" must have 1 to 79 characters", keyword));
     }
-    append_big_endian(bytes, static_cast<uint32_t>(keyword.size() + 1 + text.size()));
+    // tEXt is Latin-1, as which any bytes pass; iTXt is UTF-8.
+    const bool international = !is_ascii(text) && is_utf8(text);
+    const std::string zeros(international ? 5 : 1, '\0');
+    append_big_endian(bytes, static_cast<uint32_t>(keyword.size() + zeros.size() + text.size()));
     const size_t start = bytes.size();
-    for (char c : std::string("tEXt") + keyword)
-        bytes.push_back(static_cast<uint8_t>(c));
-    bytes.push_back(0);
-    for (char c : text)
-        bytes.push_back(static_cast<uint8_t>(c));
+    append(bytes, international ? "iTXt" : "tEXt");
+    append(bytes, keyword);
+    append(bytes, zeros);
+    append(bytes, text);
     const uLong checksum = crc32(0, bytes.data() + start, static_cast<uInt>(bytes.size() - start));
     append_big_endian(bytes, static_cast<uint32_t>(checksum));
 }

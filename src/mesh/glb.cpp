@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "mesh/formats.h"
+#include "volume/utf8.h"
 
 namespace isorast {
 
@@ -48,6 +49,20 @@ double metres(const std::string& unit) {
     return 1;
 }
 
+// A JSON string, quotes included.
+std::string json_string(const std::string& text) {
+    std::string json = "\"";
+    for (const char c : as_utf8(text)) {
+        if (c >= 0 && c < ' ') {
+            json += fmt::format("\\u{:04x}", static_cast<int>(c));
+        } else {
+            if (c == '"' || c == '\\') json += '\\';
+            json += c;
+        }
+    }
+    return json + '"';
+}
+
 std::string vector_text(const auto& v) {
     return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
 }
@@ -67,12 +82,12 @@ public:
         add_view(mesh.triangles.size() * 3 * sizeof(uint32_t), ELEMENT_ARRAY_BUFFER, UNSIGNED_INT,
                  3 * mesh.triangles.size(), "SCALAR", "");
         children_ += fmt::format("{}{}", number ? "," : "", number + 1);
-        nodes_ += fmt::format(R"(,{{"name":"{}","mesh":{},"translation":{}}})", mesh.name, number,
-                              vector_text(box.middle));
+        nodes_ += fmt::format(R"(,{{"name":{},"mesh":{},"translation":{}}})",
+                              json_string(mesh.name), number, vector_text(box.middle));
         meshes_ += fmt::format(
-            R"({}{{"name":"{}","primitives":[{{"attributes":{{"POSITION":{},"NORMAL":{}}},)"
+            R"({}{{"name":{},"primitives":[{{"attributes":{{"POSITION":{},"NORMAL":{}}},)"
             R"("indices":{},"material":0}}]}})",
-            number ? "," : "", mesh.name, accessor, accessor + 1, accessor + 2);
+            number ? "," : "", json_string(mesh.name), accessor, accessor + 1, accessor + 2);
     }
 
     std::string text(const std::string& unit) const {
@@ -81,12 +96,12 @@ public:
             R"({{"asset":{{"version":"2.0","generator":"isorast"}},"scene":0,)"
             R"("scenes":[{{"nodes":[0]}}],"nodes":[{{"name":"world","children":[{}],)"
             R"("rotation":[-0.7071067811865476,0,0,0.7071067811865476],"scale":[{},{},{}],)"
-            R"("extras":{{"lengths":"{}"}}}}{}],"meshes":[{}],"materials":[{{"doubleSided":true,)"
+            R"("extras":{{"lengths":{}}}}}{}],"meshes":[{}],"materials":[{{"doubleSided":true,)"
             R"("pbrMetallicRoughness":{{"baseColorFactor":[0.77,0.6,0.39,1],"metallicFactor":0,)"
             R"("roughnessFactor":0.6}}}}],"accessors":[{}],"bufferViews":[{}],)"
             R"("buffers":[{{"byteLength":{}}}]}})",
-            children_, scale, scale, scale, unit.empty() ? "unknown" : unit, nodes_, meshes_,
-            accessors_, views_, bytes_);
+            children_, scale, scale, scale, json_string(unit.empty() ? "unknown" : unit), nodes_,
+            meshes_, accessors_, views_, bytes_);
     }
     uint64_t bytes() const { return bytes_; }  // of the second chunk
 

@@ -101,6 +101,22 @@ TEST(MetaImage, SlicesInSeveralFiles) {
     }
 }
 
+TEST(MetaImage, NamesEndAtAnEqualsSignOrAColon) {
+    const Scratch scratch;
+    const auto values = voxels<int16_t>(24);
+    scratch.write("a:b.raw", bytes_of_values(values));
+    for (const char* fields :
+         {"NDims: 3\nDimSize: 4 3 2\nElementType : MET_SHORT\nElementSpacing:0.5 2 3\n"
+          "ElementDataFile: a:b.raw\n",
+          "NDims = 3\nDimSize: 4 3 2\nElementType = MET_SHORT\nElementSpacing = 0.5 2 3\n"
+          "ElementDataFile = a:b.raw\n"}) {
+        const auto path = scratch.write("a.mhd", fields);
+        expect_voxels(load_volume(path), values);
+        expect_affine(load_volume(path), {{{0.5, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 3, 0}}});
+        expect_like_itk(path);
+    }
+}
+
 std::string with_fields(const Scratch& scratch, const std::string& fields) {
     return scratch.write("a.mha",
                          SHORTS + fields + "ElementDataFile = LOCAL\n" + std::string(48, 'x'));

@@ -208,6 +208,55 @@ TEST(Nrrd, SpacesLikeItk) {
         expect_like_itk(with_fields(scratch, space + place));
 }
 
+TEST(Nrrd, UnitsOfLengthInAnySpelling) {
+    const Scratch scratch;
+    const auto units = [&](const std::string& value) {
+        return load_volume(with_fields(scratch, "space units: " + value + "\n")).length_units;
+    };
+    const auto quoted_units = [&](const std::string& unit) {
+        return units(fmt::format("\"{0}\" \"{0}\" \"{0}\"", unit));
+    };
+    const std::pair<const char*, std::vector<std::string>> spellings[] = {
+        {"m", {"m", "meter", "metres", "Meters"}},
+        {"cm", {"cm", "centimeter", "centimetres"}},
+        {"mm", {"mm", "millimeter", "millimetre", "Millimeters", "MILLIMETRES"}},
+        {"um",
+         {"um", "micron", "microns", "Microns", "micrometer", "micrometres", "\u00b5m", "\u03bcm",
+          "\xb5m", "\\mu m"}},
+        {"nm", {"nm", "nanometer", "nanometres"}},
+    };
+    for (const auto& [symbol, words] : spellings)
+        for (const std::string& word : words)
+            EXPECT_EQ(quoted_units(word), symbol) << word;
+    EXPECT_EQ(units("microns microns microns"), "um");
+    EXPECT_EQ(units("\"\" \"mm\" \"mm\""), "mm");
+    EXPECT_EQ(units("\"???\" \"???\" \"???\""), "");
+}
+
+// Any other name is kept, as UTF-8 of at most 16 bytes that cuts no character in two.
+TEST(Nrrd, OtherUnitsAreText) {
+    const Scratch scratch;
+    const auto load = [&](const std::string& unit) {
+        return load_volume(with_fields(
+            scratch,
+            fmt::format("space units: \"{0}\" \"{0}\" \"{0}\"\nsample units: {0}\n", unit)));
+    };
+    const std::pair<std::string, std::string> cases[] = {
+        {"Mm", "Mm"},
+        {"parsec", "parsec"},
+        {"\u00c5", "\u00c5"},
+        {"\xc5", "\u00c5"},
+        {"x\x1by", "x?y"},
+        {"fifteen letters\u00b5", "fifteen letters"},
+        {"fourteen here.\u00b5m", "fourteen here.\u00b5"},
+        {"of 14 letters.\xb5m", "of 14 letters.\u00b5"},
+    };
+    for (const auto& [unit, text] : cases) {
+        EXPECT_EQ(load(unit).length_units, text);
+        EXPECT_EQ(load(unit).value_units, text);
+    }
+}
+
 TEST(Nrrd, TimeIsTheLastAxis) {
     const Scratch scratch;
     const auto values = voxels<uint16_t>(4 * 3 * 2 * 3);

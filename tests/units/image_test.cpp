@@ -139,6 +139,25 @@ TEST_F(PngFiles, RoundTripIsExactWithTextAndProfile) {
     EXPECT_EQ(bytes, std::string(encoded.begin(), encoded.end()));
 }
 
+// tEXt is Latin-1 by PNG's specification, iTXt is UTF-8.
+TEST_F(PngFiles, TextBeyondAsciiIsInternational) {
+    const auto bytes_for = [](const std::string& value) {
+        const auto encoded = encode_png(test_picture(2, 2), {{"Source", value}});
+        return std::string(encoded.begin(), encoded.end());
+    };
+    const std::string start("Source\0\0\0\0\0", 11), name = "Sch\u00e4del.nrrd";
+    EXPECT_NE(bytes_for(name).find(chunk("iTXt", start + name)), std::string::npos);
+    EXPECT_EQ(bytes_for(name).find("tEXt"), std::string::npos);
+    // A name in Latin-1 is no UTF-8, and tEXt as it is.
+    const std::string latin =
+        "Sch\xe4"
+        "del.nrrd";
+    EXPECT_NE(bytes_for(latin).find(chunk("tEXt", start.substr(0, 7) + latin)), std::string::npos);
+    EXPECT_EQ(bytes_for("skull.nrrd").find("iTXt"), std::string::npos);
+    write_png(path("a.png"), test_picture(2, 2), {{"Source", name}});
+    EXPECT_EQ(read_png(path("a.png")).rgba, test_picture(2, 2).rgba);
+}
+
 TEST_F(PngFiles, FileIsReplacedWholeOrNotAtAll) {
     write_png(path("a.png"), test_picture(4, 4));
     write_png(path("a.png"), test_picture(8, 8));

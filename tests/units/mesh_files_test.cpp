@@ -137,6 +137,35 @@ TEST_F(MeshFiles, Glb) {
     EXPECT_EQ(position["max"], nlohmann::json({0.5, 0.5, 0.5}));
 }
 
+nlohmann::json json_of(const std::string& glb) {
+    return nlohmann::json::parse(glb.substr(20, value_at<uint32_t>(glb, 12)));
+}
+
+TEST_F(MeshFiles, GlbOfAnyText) {
+    Mesh mesh = tetrahedron();
+    for (const std::string text :
+         {"\\mu m", "\"", "a\nb\x01", "\u00b5 \U0001f9e0", "\xf4\x8f\xbf\xbf"}) {
+        mesh.name = mesh.length_units = text;
+        const auto json = json_of(written("a.glb", {mesh}));
+        EXPECT_EQ(json["nodes"][0]["extras"]["lengths"], text);
+        EXPECT_EQ(json["nodes"][1]["name"], text);
+        EXPECT_EQ(json["meshes"][0]["name"], text);
+    }
+    // What is no UTF-8 is taken for Latin-1: stray bytes, detours, surrogates, too large, cut off.
+    for (const auto& [text, read] : {std::pair<std::string, std::string>{"\xb5m", "\u00b5m"},
+                                     {"\xc1\xa1", "\u00c1\u00a1"},
+                                     {"\xe0\xa0", "\u00e0\u00a0"},
+                                     {"\xed\xa0\xa0", "\u00ed\u00a0\u00a0"},
+                                     {"\xf4\xb0\xa0\xa0", "\u00f4\u00b0\u00a0\u00a0"},
+                                     {"\xf0\xa0\xa0", "\u00f0\u00a0\u00a0"},
+                                     {"\xc2 ", "\u00c2 "}}) {
+        mesh.name = mesh.length_units = text;
+        const auto json = json_of(written("a.glb", {mesh}));
+        EXPECT_EQ(json["nodes"][0]["extras"]["lengths"], read);
+        EXPECT_EQ(json["meshes"][0]["name"], read);
+    }
+}
+
 TEST_F(MeshFiles, CoordinatesThatFloatsCannotTellApart) {
     // Far from the origin, vertices a hundredth apart.
     const Mesh far = tetrahedron(5e6, 0.01);

@@ -57,12 +57,14 @@ MetaHeader parse_header(const std::string& path, std::string_view text) {
     Lines lines(text);
     while (const auto line = lines.next()) {
         if (trimmed(*line).empty()) continue;
-        const size_t equals = line->find('=');
-        if (equals == std::string_view::npos)
+        // ITK takes a colon for an equals sign.
+        size_t separator = line->find('=');
+        if (separator == std::string_view::npos) separator = line->find(':');
+        if (separator == std::string_view::npos)
             fail(path, "expected \"Name = value\" in the MetaImage header, found {}",
                  quoted(*line));
-        const std::string_view name = trimmed(line->substr(0, equals)),
-                               value = trimmed(line->substr(equals + 1));
+        const std::string_view name = trimmed(line->substr(0, separator)),
+                               value = trimmed(line->substr(separator + 1));
         if (!header.fields.emplace(name, value).second)
             fail(path, "the MetaImage header gives {} twice", quoted(name));
         if (name == "ElementDataFile") {

@@ -4,6 +4,7 @@
 
 #include "volume/formats/data.h"
 #include "volume/formats/nrrd.h"
+#include "volume/formats/units.h"
 
 namespace isorast {
 namespace {
@@ -221,11 +222,14 @@ void set_space(Volume& volume, const NrrdHeader& header) {
     }
 }
 
-// The first word of: "mm" "mm" "mm".
+// The first that is not empty of: "mm" "mm" "mm". Without the quotes, the first word.
 std::string first_unit(const NrrdHeader& header) {
-    const auto text = header.optional(header.optional("spaceunits") ? "spaceunits" : "units");
-    const auto words = split(text.value_or(""), " \t\"");
-    return words.empty() || words[0] == "???" ? "" : std::string(words[0].substr(0, 16));
+    const std::string_view text =
+        header.optional(header.optional("spaceunits") ? "spaceunits" : "units").value_or("");
+    for (const std::string_view part : split(text, text.starts_with('"') ? "\"" : " \t\""))
+        if (const std::string_view unit = trimmed(part); !unit.empty())
+            return unit == "???" ? "" : length_unit(unit);
+    return "";
 }
 
 }  // namespace
@@ -242,8 +246,7 @@ void set_nrrd_axes(Volume& volume, const NrrdHeader& header, const LoadOptions& 
     set_space(volume, header);
     volume.length_units = first_unit(header);
     if (volume.length_units.empty() && volume.space == Space::ras) volume.length_units = "mm";
-    volume.value_units =
-        std::string(trimmed(header.optional("sampleunits").value_or("")).substr(0, 16));
+    volume.value_units = unit_name(trimmed(header.optional("sampleunits").value_or("")));
 }
 
 }  // namespace isorast

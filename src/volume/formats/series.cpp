@@ -66,7 +66,7 @@ std::vector<std::string> numbered_files(const std::string& header,
         numbers[i - 1] = *number;
     }
     const auto [first, last, step] = numbers;
-    if (step == 0 || (last - first) / step < 0)
+    if (step == 0 || (step > 0 ? last < first : last > first))
         fail(header, "the file pattern's step {} does not lead from {} to {}", step, first, last);
     const int64_t count = (last - first) / step + 1;
     if (count > static_cast<int64_t>(MOST_FILES))
