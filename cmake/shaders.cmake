@@ -20,7 +20,7 @@ function(isorast_add_shader target source name)
                 --vn ${name} --depfile ${header}.d -o ${header} ${source}
         COMMAND ${GLSLANG} -V --quiet --target-env ${environment} ${ARGN} -DBRICKED
                 -I${CMAKE_SOURCE_DIR}/src --vn ${name}_bricked -o ${header}.bricked ${source}
-        COMMAND sh -c "cat ${header}.bricked >>${header}"
+        COMMAND sh -c "cat \"$1\" >>\"$2\"" sh ${header}.bricked ${header}
         DEPENDS ${source} DEPFILE ${header}.d COMMENT "Shader ${name}" VERBATIM)
     target_sources(${target} PRIVATE ${header})
 endfunction()
