@@ -238,6 +238,31 @@ class Plots(Bench):
             self.assertGreater(min(struct.unpack(">II", png[16:24])), 300)
             self.assertIn("<svg", (self.folder / f"json/{scenario}.svg").read_text())
 
+    def test_each_size_has_tables_of_its_own(self):
+        rows = []
+        for width, height, scale in ((1280, 720, 1), (3840, 2160, 10)):
+            def add(sequence, ms, **more):
+                rows.append({"volume": "head:32:type=u8", "sequence": sequence, "way": "direct compute", "lane": "compute",
+                             "width": width, "height": height, "frame": {"median_ms": scale * ms, "p95_ms": scale * ms}, **more})
+            add("mono", 1)
+            add("stereo", 1 + scale / 20)
+            add("still", 1)
+            add("orbit", 1 + scale / 20, degrees=4)
+            add("cut", 3, moment="cold")
+            add("cut", 2, moment="warm")
+        head = {"device": "d", "driver": "d", "commit": "c", "command": "", "agreement": [], "skipped": []}
+        (self.folder / "sizes").mkdir()
+        for scenario in ("motion", "stereo"):
+            (self.folder / f"sizes/{scenario}.json").write_text(json.dumps({**head, "scenario": scenario, "rows": rows}))
+        done = subprocess.run([sys.executable, PLOT, "--tables", self.folder / "sizes"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for first, cells in (("head, 32\u00b3 u8, 720p: over a still picture, median (p95) | 4\u00b0 | cut", "1.05 (1.05) | 1.50 (1.50)"),
+                             ("head, 32\u00b3 u8, 4K: over a still picture, median (p95) | 4\u00b0 | cut", "1.50 (1.50) | 1.50 (1.50)"),
+                             ("a second eye costs | head, 32\u00b3 u8, 720p", "5 %"),
+                             ("a second eye costs | head, 32\u00b3 u8, 4K", "50 %")):
+            rule = "|---" * (first.count(" | ") + 1) + "|"
+            self.assertIn(f"| {first} |\n{rule}\n| direct compute (compute) | {cells} |\n", done.stdout)
+
     def test_nothing_to_plot(self):
         done = subprocess.run([sys.executable, PLOT, self.folder / "nowhere"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
