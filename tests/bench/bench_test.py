@@ -170,6 +170,14 @@ class Choices(Bench):
         held = [row for row in report["rows"] if row["sequence"] == "held" and row["way"] == "raymarch compute"]
         self.assertEqual([row["step"] for row in held], [0, 1, 2])
 
+    def test_an_at_sign_in_a_path_and_numbers_in_names(self):
+        (self.folder / "run@home").mkdir()
+        self.write_ball("run@home/t2_16x16x16_uint8.raw", 5)
+        (self.folder / "run@home/t10_16x16x16_uint8.raw").write_bytes(b"not the first step")
+        for volume in ("run@home", "run@home@128", "run@home@p50", "run@home@1.5sigma"):
+            report, _ = self.measured_now("frames", "--volumes", volume, *SIZE, "--ways", "raymarch compute")
+            self.assertEqual({row["volume"] for row in report["rows"]}, {"run@home"})
+
     def test_ways_that_do_not_draw_the_same_are_left_out(self):
         # Tubes thinner than a voxel: triangles and rays see different surfaces.
         report, out = self.measured_now("frames", "--volumes", "vessels:32:type=u8", *SIZE)
@@ -207,6 +215,8 @@ class Choices(Bench):
                             [["frames", *HEAD, "--sizes", "64"], "WIDTHxHEIGHT"],
                             [["frames", *HEAD, *SIZE, "--sequences", "no"], "nothing could be measured"],
                             [["frames", "--volumes", "ball.raw"], "ball.raw: expected a formula"],
+                            [["frames", "--volumes", "ball@home.raw"], "ball@home.raw: expected a formula"],
+                            [["frames", "--volumes", "head:32@p101"], "a percentile is p0 to p100"],
                             [["frames", "--volumes", "a_9x9x9_uint8.raw"], "a_9x9x9_uint8.raw"],
                             [["frames", *HEAD, "-o", "no/such/folder.json"], "cannot be written"]):
             _, err = self.bench(*words, code=1)
