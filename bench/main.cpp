@@ -117,7 +117,8 @@ void measure(Gpu& gpu, const Scenario& scenario, const Settings& settings, const
 void write(const Json& report, const std::string& path) {
     if (path.empty()) return;
     std::ofstream file(path);
-    if (!(file << report.dump(1) << "\n")) throw Error(fmt::format("{}: cannot be written", path));
+    if (!(file << report.dump(1) << "\n" << std::flush))
+        throw Error(fmt::format("{}: cannot be written", path));
 }
 
 }  // namespace

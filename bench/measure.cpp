@@ -3,6 +3,7 @@
 #include "measure.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <isorast/error.h>
 
 #include <algorithm>
@@ -99,7 +100,8 @@ void Contest::compare(const Sequence& sequence, std::vector<Taken>& taken) {
     const auto spacing = subject_.first.affine.spacing();
     const double most_depth =
         std::max(MOST_DEPTH_VOXELS, MOST_DEPTH_SHARE * std::ranges::max(subject_.first.dims));
-    std::vector<Image> truth;  // the first way's pictures
+    std::vector<Image> truth;  // of the first way that draws the sequence
+    std::string true_way;
     for (size_t i = 0; i < contenders_.size(); ++i) {
         Contender& contender = contenders_[i];
         taken[i].left_out = sequence.changes && contender.way.stored();
@@ -108,12 +110,14 @@ void Contest::compare(const Sequence& sequence, std::vector<Taken>& taken) {
             std::vector<Image> images = pictures_of(contender, sequence);
             if (truth.empty()) {
                 truth = std::move(images);
+                true_way = contender.way.words;
                 continue;
             }
             Difference found;
             for (size_t n = 0; n < truth.size(); ++n)
                 found = worse(found, difference(images[n], truth[n], std::ranges::min(spacing)));
             contender.worst = worse(found, contender.worst.value_or(found));
+            contender.others.insert(true_way);
             report_["agreement"].push_back({{"volume", subject_.name},
                                             {"sequence", title(sequence)},
                                             {"way", contender.way.words},
@@ -123,7 +127,7 @@ void Contest::compare(const Sequence& sequence, std::vector<Taken>& taken) {
                 throw Error(
                     fmt::format("another picture than {}: silhouettes overlap by {:.3f}, "
                                 "depths differ by {:.2f} voxels",
-                                contenders_.front().way.words, found.overlap, found.depth_voxels));
+                                true_way, found.overlap, found.depth_voxels));
         } catch (const Error& error) {
             taken[i].left_out = true;
             skip(contender.way.words, title(sequence), error.what());
@@ -146,8 +150,8 @@ void Contest::print_agreement() const {
     for (const Contender& contender : contenders_)
         if (contender.worst)
             fmt::print("  agreement of {} with {}: overlap {:.5f}, depth {:.3f} voxels\n",
-                       contender.way.words, contenders_.front().way.words, contender.worst->overlap,
-                       contender.worst->depth_voxels);
+                       contender.way.words, fmt::join(contender.others, ", "),
+                       contender.worst->overlap, contender.worst->depth_voxels);
 }
 
 void Contest::take_round(Contender& contender, const Sequence& sequence, Taken& taken) {

@@ -3,6 +3,8 @@
 // measured in two rounds, the second in the opposite order, so that a drift of the clocks favours
 // none.
 #pragma once
+#include <set>
+
 #include "gpu/commands.h"
 #include "settings.h"
 #include "statistics.h"
@@ -41,7 +43,8 @@ private:
         Way way;
         std::string lane;
         std::unique_ptr<Renderer> renderer;
-        std::optional<Difference> worst{};  // from the first way's pictures
+        std::optional<Difference> worst{};  // from the pictures of
+        std::set<std::string> others{};     // these ways: the first that draws each sequence
     };
     // What one way took for one sequence.
     struct Taken {

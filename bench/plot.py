@@ -112,7 +112,7 @@ def save(figure, results, title, subtitle):
 def draw_resolution(plt, results, title="Draw time against resolution"):
     figure, axes = panels(plt, len(results.volumes), 4.3)
     for axis, volume in zip(axes, results.volumes):
-        sizes = results.sizes(volume)
+        sizes = results.sizes(volume=volume)
         columns = [(w * h / 1e6, results.at_size(volume, (w, h))) for w, h in sizes]
         series = {}
         for way in results.ways:
@@ -163,13 +163,13 @@ def draw_sweep(plt, results):
 
 
 def draw_stereo(plt, results):
-    count = len(results.volumes)
-    size = (2.9 * count + 1.9, 1.9 + 0.36 * len(results.ways))
-    figure, axes = plt.subplots(1, count, figsize=size, sharex=True, sharey=True, squeeze=False)
+    views = results.views()
+    inches = (2.9 * len(views) + 1.9, 1.9 + 0.36 * len(results.ways))
+    figure, axes = plt.subplots(1, len(views), figsize=inches, sharex=True, sharey=True, squeeze=False)
     longest = 100
-    for axis, volume in zip(axes[0], results.volumes):
+    for axis, (title, volume, size) in zip(axes[0], views):
         for i, way in enumerate(results.ways):
-            share = results.overhead(volume, way)
+            share = results.overhead(volume, way, size)
             if share is None:
                 continue
             longest = max(longest, 100 * share)
@@ -179,7 +179,7 @@ def draw_stereo(plt, results):
                           textcoords="offset points", va="center", fontsize=10,
                           bbox={"fc": "white", "ec": "none", "pad": 0.8})
         axis.axvline(100, **DOTTED)
-        axis.set_title(title_of(volume))
+        axis.set_title(title)
         axis.set_yticks(range(len(results.ways)), results.ways)
         axis.set_ylim(len(results.ways) - 0.4, -0.6)
         axis.tick_params(axis="y", length=0)
@@ -188,14 +188,15 @@ def draw_stereo(plt, results):
         for tick, way in zip(axis.get_yticklabels(), results.ways):
             tick.set_color(color_of(way))
     axes[0][0].set_xlim(right=longest * 1.3)
-    figure.tight_layout(rect=(0, 0.25 / size[1], 1, 1 - 0.6 / size[1]))
+    figure.tight_layout(rect=(0, 0.25 / inches[1], 1, 1 - 0.6 / inches[1]))
     save(figure, results, "What a second eye costs", "median frame of two eyes over one; 100 %: as much as the first")
 
 
 def draw_motion(plt, results):
-    figure, axes = panels(plt, len(results.volumes), 7)
-    for axis, volume in zip(axes, results.volumes):
-        found = {way: results.movements(volume, way) for way in results.ways}
+    views = results.views()
+    figure, axes = panels(plt, len(views), 7)
+    for axis, (title, volume, size) in zip(axes, views):
+        found = {way: results.movements(volume, way, size) for way in results.ways}
         found = {way: [("still", 1, 1), *moves] for way, moves in found.items() if moves}
         names, ends = [], []
         for i, (way, moves) in enumerate(found.items()):
@@ -211,7 +212,7 @@ def draw_motion(plt, results):
         axis.set_xticks(range(len(names)),
                         [name if name in ("still", "cut") else f"{name} a frame" for name in names])
         axis.grid(axis="x", visible=False)
-        axis.set_title(title_of(volume))
+        axis.set_title(title)
         if axis is axes[-1]:
             label_ends(axis, ends)
     axes[0].set_ylabel("draw time, relative")

@@ -45,7 +45,7 @@ Series raw_series(const std::string& path) {
     if (fs::is_directory(path)) {
         for (const auto& entry : fs::directory_iterator(path))
             if (entry.path().extension() == ".raw") files.push_back(entry.path().string());
-        std::ranges::sort(files);
+        std::ranges::sort(files, comes_before);
         if (files.empty()) fail(path, "expected .raw files in this folder, found none");
     } else {
         files.push_back(path);
@@ -54,6 +54,16 @@ Series raw_series(const std::string& path) {
     return {.name = path, .steps = steps, .load = [files = std::move(files)](uint32_t step) {
                 return map_raw(files[step]);
             }};
+}
+
+// A number, auto, pNN or Nsigma; else an '@' belongs to a path.
+bool is_isovalue(std::string_view word) {
+    if (word == "auto") return true;
+    if (word.starts_with('p'))
+        word.remove_prefix(1);
+    else if (word.ends_with("sigma"))
+        word.remove_suffix(5);
+    return parse_number<double>(word).has_value();
 }
 
 }  // namespace
@@ -100,7 +110,8 @@ Size parse_size(const std::string& text) {
 }
 
 Subject parse_subject(const std::string& text) {
-    const size_t at = text.rfind('@');
+    size_t at = text.rfind('@');
+    if (at != text.npos && !is_isovalue(text.substr(at + 1))) at = text.npos;
     Subject subject{.name = text.substr(0, at)};
     subject.series =
         is_procedural(subject.name) ? procedural_series(subject.name) : raw_series(subject.name);

@@ -49,8 +49,9 @@ struct Subject {
     double isovalue = 0;
 };
 
-// "SPEC" or "SPEC@ISOVALUE": a formula ("head:256:type=u8"), raw voxels whose name tells the rest
-// (NAME_256x256x128_uint8.raw), or a folder of such files, a time step each.
+// "SPEC" or "SPEC@ISOVALUE" (a number, auto, pNN or Nsigma): a formula ("head:256:type=u8"), raw
+// voxels whose name tells the rest (NAME_256x256x128_uint8.raw), or a folder of such files, a time
+// step each.
 Subject parse_subject(const std::string& text);
 
 }  // namespace isorast::bench

@@ -17,9 +17,10 @@ Json quantiles(const std::vector<double>& values) {
 
 double quantile(std::vector<double> values, double share) {
     if (values.empty()) return 0;
-    const size_t at = std::min(values.size() - 1, size_t(share * double(values.size())));
-    std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(at));
-    return values[at];
+    std::ranges::sort(values);
+    const double at = share * double(values.size() - 1);
+    const size_t below = size_t(at), above = std::min(below + 1, values.size() - 1);
+    return std::lerp(values[below], values[above], at - double(below));
 }
 
 double frame_ms(const std::vector<gpu::TimedPass>& frame) {

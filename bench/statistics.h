@@ -6,6 +6,8 @@
 
 namespace isorast::bench {
 
+// Between two values where the share falls between them: of an even count, the median is the mean
+// of the middle two.
 double quantile(std::vector<double> values, double share);
 
 // From the first to the last timestamp.

@@ -66,8 +66,14 @@ class Results:
         found = {way: self.pick(way=way, **wanted) for way in self.ways}
         return {way: median_ms(rows) for way, rows in found.items() if rows}
 
-    def sizes(self, volume):
-        return unique((row["width"], row["height"]) for row in self.pick(volume=volume))
+    def sizes(self, **wanted):
+        return unique((row["width"], row["height"]) for row in self.pick(**wanted))
+
+    def views(self):
+        """[(title, volume, size)]; the title names the size where there are several."""
+        several = len(self.sizes()) > 1
+        return [(title_of(volume) + (f", {size_name(size)}" if several else ""), volume, size)
+                for volume in self.volumes for size in self.sizes(volume=volume)]
 
     def at_size(self, volume, size):
         """{way: milliseconds}; of a time series, all steps in turn, but for a stored mesh those held."""
@@ -77,22 +83,23 @@ class Results:
             found.update(self.medians(sequence=sequence, **where))
         return found
 
-    def overhead(self, volume, way):
+    def overhead(self, volume, way, size):
         """By what share two eyes cost more than one."""
-        mono = self.pick(volume=volume, way=way, sequence="mono")
-        both = self.pick(volume=volume, way=way, sequence="stereo")
+        where = {"volume": volume, "way": way, "width": size[0], "height": size[1]}
+        mono = self.pick(sequence="mono", **where)
+        both = self.pick(sequence="stereo", **where)
         return median_ms(both) / median_ms(mono) - 1 if mono and both else None
 
-    def movements(self, volume, way):
+    def movements(self, volume, way, size):
         """[(name, median, p95)]: orbits over the still picture; a cut's cold frame over a warm one."""
         def over(name, rows, base):
             return (name, median_ms(rows) / median_ms(base), p95_ms(rows) / median_ms(base))
 
-        still = self.pick(volume=volume, way=way, sequence="still")
-        orbits = self.pick(volume=volume, way=way, sequence="orbit")
+        where = {"volume": volume, "way": way, "width": size[0], "height": size[1]}
+        still = self.pick(sequence="still", **where)
+        orbits = self.pick(sequence="orbit", **where)
         found = [over(f"{row['degrees']:g}\u00b0", [row], still) for row in orbits if still]
-        cold, warm = (self.pick(volume=volume, way=way, sequence="cut", moment=moment)
-                      for moment in ("cold", "warm"))
+        cold, warm = (self.pick(sequence="cut", moment=moment, **where) for moment in ("cold", "warm"))
         return found + ([over("cut", cold, warm)] if cold and warm else [])
 
     def formulas(self):
@@ -164,7 +171,7 @@ def print_growth(results, name, pairs, what):
 
 def resolution_table(results, ratios_only):
     for volume in results.volumes:
-        sizes = results.sizes(volume)
+        sizes = results.sizes(volume=volume)
         columns = [results.at_size(volume, size) for size in sizes]
         names = [size_name(size) for size in sizes]
         print_times(results, title_of(volume), names, columns, ratios_only)
@@ -220,17 +227,19 @@ def sweep_table(results, ratios_only):
 
 
 def stereo_table(results, ratios_only):
-    lines = []
-    for way in results.ways:
-        found = [results.overhead(volume, way) for volume in results.volumes]
-        lines.append((f"{way} ({results.lanes[way]})",
-                      ["" if share is None else f"{100 * share:.0f} %" for share in found]))
-    print_table(["a second eye costs", *map(title_of, results.volumes)], lines)
+    for size in results.sizes():
+        views = [view for view in results.views() if view[2] == size]
+        lines = []
+        for way in results.ways:
+            found = [results.overhead(volume, way, size) for _, volume, _ in views]
+            lines.append((f"{way} ({results.lanes[way]})",
+                          ["" if share is None else f"{100 * share:.0f} %" for share in found]))
+        print_table(["a second eye costs", *(title for title, _, _ in views)], lines)
 
 
 def motion_table(results, ratios_only):
-    for volume in results.volumes:
-        found = {way: results.movements(volume, way) for way in results.ways}
+    for title, volume, size in results.views():
+        found = {way: results.movements(volume, way, size) for way in results.ways}
         found = {way: moves for way, moves in found.items() if moves}
         if not found:
             continue
@@ -238,7 +247,7 @@ def motion_table(results, ratios_only):
         lines = [(f"{way} ({results.lanes[way]})",
                   [f"{median:.2f} ({p95:.2f})" for _, median, p95 in moves])
                  for way, moves in found.items()]
-        print_table([f"{title_of(volume)}: over a still picture, median (p95)", *names], lines)
+        print_table([f"{title}: over a still picture, median (p95)", *names], lines)
 
 
 def scaling_table(results, ratios_only):

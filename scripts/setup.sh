@@ -123,11 +123,13 @@ write_environment() {
     local library manifest
     library=$(echo "$CACHE"/lavapipe/usr/lib/*/libvulkan_lvp.so)
     manifest=$CACHE/lavapipe/isorast_lavapipe.json
+    # Escaped as a JSON string, then as a replacement of sed.
+    library=$(printf '%s' "$library" | sed -e 's/[\\"]/\\&/g' -e 's/[\\&#]/\\&/g')
     sed -E "s#(\"library_path\": *)\"[^\"]*\"#\1\"$library\"#" \
         "$CACHE"/lavapipe/usr/share/vulkan/icd.d/lvp_icd*.json >"$manifest"
     cat >"$CACHE/env.sh" <<END
 # Written by scripts/setup.sh: finds the lavapipe that it unpacked.
-export VK_ADD_DRIVER_FILES="$manifest\${VK_ADD_DRIVER_FILES:+:\$VK_ADD_DRIVER_FILES}"
+export VK_ADD_DRIVER_FILES=$(printf '%q' "$manifest")"\${VK_ADD_DRIVER_FILES:+:\$VK_ADD_DRIVER_FILES}"
 export VK_LOADER_DRIVERS_DISABLE="lvp_icd*\${VK_LOADER_DRIVERS_DISABLE:+,\$VK_LOADER_DRIVERS_DISABLE}"
 END
 }

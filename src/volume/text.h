@@ -26,6 +26,8 @@ std::string lowercase(std::string_view text);
 std::vector<std::string_view> split(std::string_view text, std::string_view separators = " \t");
 // In quotes, at most 60 characters, none of them unprintable: foreign text for a one-line message.
 std::string quoted(std::string_view text);
+// An order in which numbers in names count as numbers: t2 comes before t10.
+bool comes_before(std::string_view a, std::string_view b);
 
 // The whole word is a number of type T, in range; NaN and infinities pass for floating-point types.
 template <class T>

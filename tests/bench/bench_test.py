@@ -170,6 +170,14 @@ class Choices(Bench):
         held = [row for row in report["rows"] if row["sequence"] == "held" and row["way"] == "raymarch compute"]
         self.assertEqual([row["step"] for row in held], [0, 1, 2])
 
+    def test_an_at_sign_in_a_path_and_numbers_in_names(self):
+        (self.folder / "run@home").mkdir()
+        self.write_ball("run@home/t2_16x16x16_uint8.raw", 5)
+        (self.folder / "run@home/t10_16x16x16_uint8.raw").write_bytes(b"not the first step")
+        for volume in ("run@home", "run@home@128", "run@home@p50", "run@home@1.5sigma"):
+            report, _ = self.measured_now("frames", "--volumes", volume, *SIZE, "--ways", "raymarch compute")
+            self.assertEqual({row["volume"] for row in report["rows"]}, {"run@home"})
+
     def test_ways_that_do_not_draw_the_same_are_left_out(self):
         # Tubes thinner than a voxel: triangles and rays see different surfaces.
         report, out = self.measured_now("frames", "--volumes", "vessels:32:type=u8", *SIZE)
@@ -207,6 +215,8 @@ class Choices(Bench):
                             [["frames", *HEAD, "--sizes", "64"], "WIDTHxHEIGHT"],
                             [["frames", *HEAD, *SIZE, "--sequences", "no"], "nothing could be measured"],
                             [["frames", "--volumes", "ball.raw"], "ball.raw: expected a formula"],
+                            [["frames", "--volumes", "ball@home.raw"], "ball@home.raw: expected a formula"],
+                            [["frames", "--volumes", "head:32@p101"], "a percentile is p0 to p100"],
                             [["frames", "--volumes", "a_9x9x9_uint8.raw"], "a_9x9x9_uint8.raw"],
                             [["frames", *HEAD, "-o", "no/such/folder.json"], "cannot be written"]):
             _, err = self.bench(*words, code=1)
@@ -237,6 +247,31 @@ class Plots(Bench):
             self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
             self.assertGreater(min(struct.unpack(">II", png[16:24])), 300)
             self.assertIn("<svg", (self.folder / f"json/{scenario}.svg").read_text())
+
+    def test_each_size_has_tables_of_its_own(self):
+        rows = []
+        for width, height, scale in ((1280, 720, 1), (3840, 2160, 10)):
+            def add(sequence, ms, **more):
+                rows.append({"volume": "head:32:type=u8", "sequence": sequence, "way": "direct compute", "lane": "compute",
+                             "width": width, "height": height, "frame": {"median_ms": scale * ms, "p95_ms": scale * ms}, **more})
+            add("mono", 1)
+            add("stereo", 1 + scale / 20)
+            add("still", 1)
+            add("orbit", 1 + scale / 20, degrees=4)
+            add("cut", 3, moment="cold")
+            add("cut", 2, moment="warm")
+        head = {"device": "d", "driver": "d", "commit": "c", "command": "", "agreement": [], "skipped": []}
+        (self.folder / "sizes").mkdir()
+        for scenario in ("motion", "stereo"):
+            (self.folder / f"sizes/{scenario}.json").write_text(json.dumps({**head, "scenario": scenario, "rows": rows}))
+        done = subprocess.run([sys.executable, PLOT, "--tables", self.folder / "sizes"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for first, cells in (("head, 32\u00b3 u8, 720p: over a still picture, median (p95) | 4\u00b0 | cut", "1.05 (1.05) | 1.50 (1.50)"),
+                             ("head, 32\u00b3 u8, 4K: over a still picture, median (p95) | 4\u00b0 | cut", "1.50 (1.50) | 1.50 (1.50)"),
+                             ("a second eye costs | head, 32\u00b3 u8, 720p", "5 %"),
+                             ("a second eye costs | head, 32\u00b3 u8, 4K", "50 %")):
+            rule = "|---" * (first.count(" | ") + 1) + "|"
+            self.assertIn(f"| {first} |\n{rule}\n| direct compute (compute) | {cells} |\n", done.stdout)
 
     def test_nothing_to_plot(self):
         done = subprocess.run([sys.executable, PLOT, self.folder / "nowhere"], capture_output=True, text=True)

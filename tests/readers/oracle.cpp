@@ -101,7 +101,7 @@ Dump parse_dump(std::istream& lines, std::string& next_file) {
         std::istringstream words(line);
         words >> name;
         if (name == "file") {
-            words >> next_file;
+            std::getline(words >> std::ws, next_file);
             break;
         }
         dump[name];
@@ -115,8 +115,8 @@ Dump parse_dump(std::istream& lines, std::string& next_file) {
 
 std::optional<Dump> itk_dump([[maybe_unused]] const std::string& path) {
 #ifdef ISORAST_ITK_DUMP
-    const auto text =
-        output_of(std::string(ISORAST_ITK_DUMP) + " " + quoted_for_shell(path) + " 2>/dev/null");
+    const auto text = output_of(quoted_for_shell(ISORAST_ITK_DUMP) + " " + quoted_for_shell(path) +
+                                " 2>/dev/null");
     if (!text) return std::nullopt;
     std::istringstream lines(*text);
     std::string none;
@@ -149,7 +149,7 @@ std::map<std::string, Dump> nibabel_dumps(const std::vector<std::string>& paths)
     const char* given = std::getenv("ISORAST_PYTHON");
     std::string command = given != nullptr ? given : "/usr/bin/python3";
     if (!output_of(command + " -c 'import nibabel' 2>/dev/null")) return {};
-    command += " " ISORAST_SOURCE_DIR "/tests/oracles/nibabel_dump.py";
+    command += " " + quoted_for_shell(ISORAST_SOURCE_DIR "/tests/oracles/nibabel_dump.py");
     for (const std::string& path : paths)
         command += " " + quoted_for_shell(path);
     const auto text = output_of(command);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Time series: the steps of one file, or several files, a step each.
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 
@@ -12,39 +11,6 @@ namespace isorast {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_digit(char c) {
-    return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
-
-// The run of digits at the front, without leading zeros; cut off `text`.
-std::string_view take_number(std::string_view& text) {
-    size_t end = 0;
-    while (end < text.size() && is_digit(text[end]))
-        ++end;
-    std::string_view number = text.substr(0, end);
-    text.remove_prefix(end);
-    number.remove_prefix(std::min(number.find_first_not_of('0'), number.size()));
-    return number;
-}
-
-// Numbers in names count as numbers: t2 comes before t10.
-bool comes_before(std::string_view a, std::string_view b) {
-    const std::string_view whole_a = a, whole_b = b;
-    while (!a.empty() && !b.empty()) {
-        if (is_digit(a[0]) && is_digit(b[0])) {
-            const std::string_view m = take_number(a), n = take_number(b);
-            if (m.size() != n.size()) return m.size() < n.size();
-            if (m != n) return m < n;
-        } else if (a[0] != b[0]) {
-            return a[0] < b[0];
-        } else {
-            a.remove_prefix(1);
-            b.remove_prefix(1);
-        }
-    }
-    return a.empty() && b.empty() ? whole_a < whole_b : a.empty();
-}
 
 bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
     const std::string lower = lowercase(path);
