@@ -90,19 +90,21 @@ void Renderer::State::record(gpu::Commands& commands, const Frame& frame,
             if (other) in_flight.push_back(*other);
     grid_.show(frame.time_step, std::move(in_flight));
     step = frame.time_step;
-    try {
-        record_passes(commands, frame);
-    } catch (...) {
-        forget_recording();
-        throw;
-    }
+    or_forget([&] { record_passes(commands, frame); });
 }
 
-void Renderer::State::forget_recording() {
-    grid_.forget_pyramid();
-    prepared_step_.reset();
-    target_.size = {0, 0};
-    depth_image_ = {};
+// If that throws, the commands will not run: what they would have prepared is not there.
+template <class Rest>
+void Renderer::State::or_forget(Rest&& rest) {
+    try {
+        rest();
+    } catch (...) {
+        grid_.forget_pyramid();
+        prepared_step_.reset();
+        target_.size = {0, 0};
+        depth_image_lost_ = true;
+        throw;
+    }
 }
 
 void Renderer::State::record_passes(gpu::Commands& commands, const Frame& frame) {
@@ -129,12 +131,15 @@ Image Renderer::State::render(const Frame& frame) {
     gpu::Submission& submission = *submissions_.front();
     gpu::Commands commands = submission.begin();
     record(commands, frame, steps_in_flight_.front());
-    fit_readback(frame);
-    commands.copy_to_buffer(target_.color, color_readback_);
-    if (frame.want_depth) commands.copy_to_buffer(target_.distances, depth_readback_);
-    if (technique_->counters())
-        commands.copy(*technique_->counters(), 0, counters_readback_, 0, sizeof(shared::Counters));
-    submission.submit();
+    or_forget([&] {
+        fit_readback(frame);
+        commands.copy_to_buffer(target_.color, color_readback_);
+        if (frame.want_depth) commands.copy_to_buffer(target_.distances, depth_readback_);
+        if (technique_->counters())
+            commands.copy(*technique_->counters(), 0, counters_readback_, 0,
+                          sizeof(shared::Counters));
+        submission.submit();
+    });
     submission.wait();
     steps_in_flight_.front().reset();
     collect_stats(submission.slot());
@@ -151,7 +156,7 @@ std::vector<std::vector<gpu::TimedPass>> Renderer::State::run(const std::vector<
         if (i >= frames.size()) continue;
         gpu::Commands commands = submission.begin();
         record(commands, frames[i], steps_in_flight_[i % in_flight]);
-        submission.submit();
+        or_forget([&] { submission.submit(); });
     }
     return times;
 }
@@ -168,7 +173,7 @@ void Renderer::State::copy_depth(gpu::Commands& commands, bool as_image) {
     commands.barrier();
     if (!as_image) return;
     const VkExtent3D old = depth_image_ ? depth_image_.extent() : VkExtent3D{};
-    if (old.width != extent.width || old.height != extent.height ||
+    if (depth_image_lost_ || old.width != extent.width || old.height != extent.height ||
         depth_image_.layers() != layers) {
         depth_image_ = gpu::Texture(
             device_,
@@ -179,6 +184,7 @@ void Renderer::State::copy_depth(gpu::Commands& commands, bool as_image) {
              .layers = layers},
             "a copy of the depth");
         commands.discard_to_general(depth_image_);
+        depth_image_lost_ = false;
     }
     commands.copy_to_image(depth_buffer_, depth_image_);
     commands.barrier();
@@ -197,12 +203,7 @@ RecordedFrame Renderer::State::record_for_host(VkCommandBuffer handle, const Fra
     gpu::Commands commands(device_, handle, *host_slots_[slot]);
     record(commands, frame, host_steps_in_flight_[slot]);
     const bool as_image = copies.image && target_.depth.format() != VK_FORMAT_D32_SFLOAT;
-    try {
-        if (as_image || copies.buffer) copy_depth(commands, as_image);
-    } catch (...) {
-        forget_recording();
-        throw;
-    }
+    if (as_image || copies.buffer) or_forget([&] { copy_depth(commands, as_image); });
     const auto view = [&](const gpu::Texture& texture) {
         return target_.eyes == 1 ? texture.layer_view(0) : texture.view();
     };

@@ -39,8 +39,8 @@ private:
     // One frame into these commands; `step` keeps its time step while it may be in flight.
     void record(gpu::Commands& commands, const Frame& frame, std::optional<uint32_t>& step);
     void record_passes(gpu::Commands& commands, const Frame& frame);
-    // These commands will not run: what they would have prepared is not there.
-    void forget_recording();
+    template <class Rest>
+    void or_forget(Rest&& rest);
     void copy_depth(gpu::Commands& commands, bool as_image);
     Image read_back(const Frame& frame) const;
     void fit_readback(const Frame& frame);
@@ -60,6 +60,7 @@ private:
     std::vector<std::unique_ptr<gpu::Slot>> host_slots_;
     std::vector<std::optional<uint32_t>> steps_in_flight_, host_steps_in_flight_;  // one for each
     gpu::Texture depth_image_;                                                     // DepthCopies
+    bool depth_image_lost_ = false;  // by commands that will not run; others may still use it
     gpu::Buffer depth_buffer_;
     gpu::Buffer color_readback_, depth_readback_, counters_readback_;
     FrameStats stats_;
