@@ -127,7 +127,7 @@ struct Statistics {
     uint64_t finite = 0, not_finite = 0;
     std::vector<uint64_t> histogram;  // equal bins from minimum to maximum
     // Values at equal steps of rank, from minimum to maximum; of types wider than 16 bits, of a
-    // million voxels from all over the volume.
+    // quarter of a million voxels from all over the volume.
     std::vector<double> ranked;
 
     // The value below which `percent` (0 to 100) of the finite voxels lie.

@@ -20,20 +20,6 @@ constexpr uint64_t SAMPLES = 1 << 14;
 // Stored values are mostly between 1 / 2^32 and 2^32, of which squares and products are floats.
 constexpr int MOST_EXPONENT = 32;
 
-// Some finite raw values from all over the volume.
-template <class T>
-std::vector<double> samples_of(const Volume& volume) {
-    const std::byte* bytes = volume.bytes.span().data();
-    const uint64_t count = volume.voxel_count();
-    const uint64_t step = std::max(count / SAMPLES, uint64_t{1}) | 1;  // not always the same column
-    std::vector<double> samples;
-    for (uint64_t i = 0; i < count; i += step) {
-        const auto raw = double(load_voxel<T>(bytes, i));
-        if (std::isfinite(raw)) samples.push_back(raw);
-    }
-    return samples;
-}
-
 double median(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto middle = values.begin() + ptrdiff_t(values.size() / 2);
@@ -62,7 +48,7 @@ double usual_distance(const std::vector<double>& values, double base) {
 // The base and the scale of stored floats.
 template <class T>
 void fit_floats(const Volume& volume, Stored& stored) {
-    const std::vector<double> samples = samples_of<T>(volume), values = typical(samples);
+    const std::vector<double> samples = sample_raw<T>(volume, SAMPLES), values = typical(samples);
     if (!std::is_same_v<T, float>) stored.base = median(values);
     double distance = usual_distance(values, stored.base);
     if (distance == 0) distance = usual_distance(samples, stored.base);

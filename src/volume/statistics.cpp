@@ -20,7 +20,7 @@ namespace isorast {
 namespace {
 
 constexpr uint64_t CHUNK = 1 << 20;    // voxels
-constexpr uint64_t SAMPLED = 1 << 20;  // voxels of wide types that are ranked, about
+constexpr uint64_t SAMPLED = 1 << 18;  // voxels of wide types that are ranked, about
 constexpr uint64_t RANKS = 4096;       // steps
 
 // Calls work(worker, chunk, first, last) for every chunk, on all cores.
@@ -233,14 +233,10 @@ Statistics from_levels(const Volume& volume, uint32_t bins) {
 
 template <class T>
 std::vector<double> sorted_sample(const Volume& volume, std::optional<double> left_out) {
-    const std::byte* bytes = volume.bytes.span().data();
-    const uint64_t count = volume.voxel_count();
-    const uint64_t step = std::max(count / SAMPLED, uint64_t{1}) | 1;  // not always the same column
-    std::vector<double> values;
-    for (uint64_t index = 0; index < count; index += step) {
-        const double value = load_voxel<T>(bytes, index) * volume.slope + volume.intercept;
-        if (std::isfinite(value) && value != left_out) values.push_back(value);
-    }
+    std::vector<double> values = sample_raw<T>(volume, SAMPLED);
+    for (double& value : values)
+        value = value * volume.slope + volume.intercept;
+    std::erase_if(values, [&](double value) { return !std::isfinite(value) || value == left_out; });
     std::ranges::sort(values);
     return values;
 }

@@ -4,7 +4,10 @@
 #pragma once
 #include <isorast/volume.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <vector>
 
 namespace isorast {
 
@@ -37,6 +40,20 @@ decltype(auto) with_type(VoxelType type, F&& f) {
             break;
     }
     return f(double{});
+}
+
+// Finite raw values from all over a volume, about `most` of them; the same each time.
+template <class T>
+std::vector<double> sample_raw(const Volume& volume, uint64_t most) {
+    const std::byte* bytes = volume.bytes.span().data();
+    const uint64_t count = volume.voxel_count();
+    const uint64_t step = std::max(count / most, uint64_t{1}) | 1;  // not always the same column
+    std::vector<double> values;
+    for (uint64_t index = 0; index < count; index += step) {
+        const auto raw = static_cast<double>(load_voxel<T>(bytes, index));
+        if (std::isfinite(raw)) values.push_back(raw);
+    }
+    return values;
 }
 
 // All but the voxels.
