@@ -58,11 +58,11 @@ struct DepthCopies {
 // have finished on the GPU. A frame of another size or number of eyes makes all images anew, and
 // the first after that with several isovalues or with want_depth adds one: then all frames recorded
 // before must have finished. At most one frame of a Renderer is recorded at a time. Barriers before
-// and after the frame are included. Frames must be submitted in the order in which they were
-// recorded. A time step that is not on the GPU is waited for here; without HostDevice::upload_queue
-// it is also read here, and uploaded by submissions to HostDevice::queue. So does the technique
-// meshlets with new isovalues or a new time step, and waits: frames recorded before must have been
-// submitted then.
+// and after the frame are included. Frames must be submitted, all of them, in the order in which
+// they were recorded. A time step that is not on the GPU is waited for here; without
+// HostDevice::upload_queue it is also read here, and uploaded by submissions to HostDevice::queue.
+// So does the technique meshlets with new isovalues or a new time step, and waits: frames recorded
+// before must have been submitted then.
 //
 // Throws Error as Renderer::render() does, for a slot out of range, and for DepthCopies::image
 // without graphics. Then the commands must be discarded, not submitted, and the next frame counts

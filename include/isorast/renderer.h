@@ -113,9 +113,9 @@ std::vector<std::string> techniques();
 // rasterizer draws a sphere that is compared with the formula, and where there is a choice, both
 // draw a small scene (the hardware rasterizer with either occlusion test) and the faster one wins.
 // The answer is kept in the user's cache directory (XDG_CACHE_HOME or ~/.cache), for this device,
-// driver and version of isorast; where that cannot be written, for the life of the Gpu. `type`: of
-// the volume to be drawn, if there is one; the sphere has the same, so that its shaders are
-// compiled only once.
+// driver and version of isorast; where that cannot be written, for the life of the Gpu; not at all
+// if the sphere could not be drawn, for want of memory for one. `type`: of the volume to be drawn,
+// if there is one; the sphere has the same, so that its shaders are compiled only once.
 RasterizerChoice choose_rasterizer(Gpu& gpu, VoxelType type = VoxelType::u8);
 
 class Renderer {

@@ -17,7 +17,8 @@ constexpr uint32_t MAX_QUERIES = 512;  // two a pass
 
 }  // namespace
 
-Slot::Slot(const Device& device) : device_(device) {
+// Constructors begin with those that make nothing: should they throw, destructors run.
+Slot::Slot(const Device& device) : Slot(device, Nothing()) {
     const std::array sizes{VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8 * MAX_SETS},
                            VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 8},
                            VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * MAX_SETS},
@@ -238,7 +239,7 @@ void Commands::end_rendering() {
     device_.functions().end_rendering(commands_);
 }
 
-Submission::Submission(const Device& device) : device_(device), slot_(device) {
+Submission::Submission(const Device& device) : Submission(device, Nothing()) {
     const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                        .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                        .queueFamilyIndex = device.queue_family()};

@@ -45,6 +45,8 @@ public:
 
 private:
     friend class Commands;
+    struct Nothing {};
+    Slot(const Device& device, Nothing) : device_(device) {}
     const Device& device_;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkQueryPool queries_ = VK_NULL_HANDLE;
@@ -133,6 +135,8 @@ public:
     Slot& slot() { return slot_; }
 
 private:
+    struct Nothing {};
+    Submission(const Device& device, Nothing) : device_(device), slot_(device) {}
     const Device& device_;
     Slot slot_;
     VkCommandPool pool_ = VK_NULL_HANDLE;

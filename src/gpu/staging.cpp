@@ -7,8 +7,9 @@
 
 namespace isorast::gpu {
 
-Staging::Staging(const Device& device, uint64_t piece_bytes)
-    : device_(device), piece_bytes_(piece_bytes) {
+// Begins with the constructor that makes nothing: should this one throw, the destructor runs.
+Staging::Staging(const Device& device, uint64_t piece_bytes) : Staging(device, Nothing()) {
+    piece_bytes_ = piece_bytes;
     const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                        .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                        .queueFamilyIndex = device.upload_family()};

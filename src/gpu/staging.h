@@ -34,10 +34,12 @@ private:
         VkFence fence = VK_NULL_HANDLE;
         bool pending = false;
     };
+    struct Nothing {};
+    Staging(const Device& device, Nothing) : device_(device) {}
     void wait(Piece& piece);
 
     const Device& device_;
-    uint64_t piece_bytes_;
+    uint64_t piece_bytes_ = 0;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     std::array<Piece, 4> pieces_;
     size_t current_ = 0;

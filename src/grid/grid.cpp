@@ -128,7 +128,7 @@ GridPlan plan_grid(const gpu::Device& device, const Volume& volume, uint32_t max
 
 Grid::Grid(const gpu::Device& device, const Series& series, uint32_t max_brick_side,
            uint64_t step_bytes)
-    : device_(device), sampler_(device) {
+    : Grid(device, Nothing()) {  // which makes nothing: should this throw, ~Grid() runs
     const Volume first = series.load(0);
     check(first);
     header_ = header_of(first);
@@ -150,7 +150,7 @@ Grid::Grid(const gpu::Device& device, const Series& series, uint32_t max_brick_s
     make_pipelines();
     step_ = &steps_->first();
     gpu::run_once(device_, [&](gpu::Commands& commands) { begin_frame(commands, {}); });
-    building_ = false;
+    have_run();
 }
 
 Grid::~Grid() {
@@ -233,16 +233,16 @@ void Grid::begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame) 
     commands.update(frame_buffer_, 0, &frame, sizeof(frame));
     commands.barrier();
     commands.set_scene(make_set(commands));
-    building_ = !step_->built;
-    if (building_) build_step(commands);
-    step_->built = true;
+    if (step_->built) return;
+    build_step(commands);
+    step_->built = step_->may_wait = true;
 }
 
 void Grid::begin_alone(gpu::Commands& commands) const {
     commands.update(info_buffer_, 0, &info_, sizeof(info_));
     commands.barrier();
     commands.set_scene(make_set(commands));
-    if (building_) build_step(commands);
+    if (step_->may_wait) build_step(commands);
 }
 
 void Grid::build_step(gpu::Commands& commands) const {
@@ -321,7 +321,7 @@ std::vector<std::array<float, 2>> Grid::read_level(uint32_t level) const {
     const uint64_t bytes = (count * node_bytes + skip + 3) & ~uint64_t{3};
     gpu::Buffer host(device_, bytes, gpu::Buffer::Memory::host, "reading min-max blocks");
     gpu::run_once(device_, [&](gpu::Commands& commands) {
-        if (building_) begin_alone(commands);  // those commands may not have run yet
+        if (step_->may_wait) begin_alone(commands);
         commands.copy(step_->minmax, nodes.w * node_bytes - skip, host, 0, bytes);
     });
     std::vector<std::array<float, 2>> ranges(count);

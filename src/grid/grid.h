@@ -66,13 +66,16 @@ public:
     // Makes set 0 and gives it to the commands' passes; `frame` becomes the frame's uniform block.
     // Where a step is shown for the first time, builds its min-max pyramid.
     void begin_frame(gpu::Commands& commands, const shared::FrameInfo& frame);
-    // For commands that run at once, while those of the last begin_frame() are still recorded:
-    // makes set 0, and the pyramid should only those commands build it.
+    // For commands that run at once, while others are still recorded: makes set 0, and the pyramid
+    // should only those others build it.
     void begin_alone(gpu::Commands& commands) const;
-    // The commands of the last begin_frame() will not run.
+    // The commands of the last begin_frame() will not run, or have.
     void forget_pyramid() { step_->built = false; }
+    void have_run() { step_->may_wait = false; }
 
 private:
+    struct Nothing {};
+    Grid(const gpu::Device& device, Nothing) : device_(device), sampler_(device) {}
     void make_scene_layout();
     void make_pipelines();
     VkDescriptorSet make_set(gpu::Commands& commands) const;
@@ -87,8 +90,7 @@ private:
     StepFormat format_;
     shared::GridInfo info_{};
     std::unique_ptr<Steps> steps_;
-    Step* step_ = nullptr;   // the one that is shown
-    bool building_ = false;  // by the commands of the last begin_frame()
+    Step* step_ = nullptr;  // the one that is shown
     gpu::Sampler sampler_;
     gpu::Buffer info_buffer_, frame_buffer_;
     VkDescriptorSetLayout scene_layout_ = VK_NULL_HANDLE;

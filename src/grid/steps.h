@@ -26,7 +26,8 @@ struct Step {
     uint32_t number = UINT32_MAX;  // UINT32_MAX: none
     std::vector<gpu::Texture> bricks;
     gpu::Buffer minmax;
-    bool built = false;  // minmax, and the bricks of a formula that is sampled on the GPU
+    bool built = false;     // minmax, and the bricks of a formula that is sampled on the GPU
+    bool may_wait = false;  // for commands that build it: recorded, and perhaps not run
     std::optional<field::FieldSampling> sampling;  // of that formula
     StoredRange range;                             // of floats that came from the CPU
 };

@@ -110,8 +110,9 @@ private:
 };
 
 // Empty if the compute rasterizer draws what it should: triangles of some pixels, and such as are
-// larger than the picture.
-std::string problem_of_compute(const Gpu& gpu, VoxelType type) {
+// larger than the picture. `failed`: if it could not draw, which may be this moment's fault, such
+// as memory that other programs have.
+std::string problem_of_compute(const Gpu& gpu, VoxelType type, bool& failed) {
     try {
         const Volume volume = sphere(type);
         SelfTest test(gpu.device(), volume);
@@ -119,6 +120,7 @@ std::string problem_of_compute(const Gpu& gpu, VoxelType type) {
         if (wrong == 0) return "";
         return fmt::format("{} of {} pixels of a sphere are wrong", wrong, 2 * PICTURE * PICTURE);
     } catch (const Error& error) {
+        failed = true;
         return error.what();
     }
 }
@@ -142,8 +144,8 @@ double frame_ms(Gpu& gpu, Rasterizer rasterizer, Occlusion occlusion) {
     return fastest;
 }
 
-RasterizerChoice find_choice(Gpu& gpu, VoxelType type, bool hardware) {
-    RasterizerChoice choice{.problem = problem_of_compute(gpu, type)};
+RasterizerChoice find_choice(Gpu& gpu, VoxelType type, bool hardware, bool& failed) {
+    RasterizerChoice choice{.problem = problem_of_compute(gpu, type, failed)};
     const bool compute = choice.problem.empty();
     // A CPU has no rasterizer to spare: mesh shaders there cost seconds to compile and always lose.
     if (hardware && !gpu.device().is_cpu()) {
@@ -232,7 +234,10 @@ RasterizerChoice choose_rasterizer(Gpu& gpu, VoxelType type) {
     const fs::path file = cache_file(key);
     if (!file.empty()) known = read_choice(file, key);
     if (!known) {
-        known = find_choice(gpu, type, hardware);
+        bool failed = false;
+        const RasterizerChoice found = find_choice(gpu, type, hardware, failed);
+        if (failed) return found;  // for now
+        known = found;
         if (!file.empty()) write_choice(file, key, *known);
     }
     return *known;

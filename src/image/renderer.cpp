@@ -141,6 +141,7 @@ Image Renderer::State::render(const Frame& frame) {
         submission.submit();
     });
     submission.wait();
+    grid_.have_run();
     steps_in_flight_.front().reset();
     collect_stats(submission.slot());
     return read_back(frame);
@@ -158,6 +159,7 @@ std::vector<std::vector<gpu::TimedPass>> Renderer::State::run(const std::vector<
         record(commands, frames[i], steps_in_flight_[i % in_flight]);
         or_forget([&] { submission.submit(); });
     }
+    grid_.have_run();
     return times;
 }
 

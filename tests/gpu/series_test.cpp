@@ -303,6 +303,18 @@ TEST_F(SeriesTest, AHostRecordsTheStepsOfASeries) {
                 << steps[slot];
         }
     }
+    // Two recorded frames of a step that is not here yet, and none submitted.
+    std::array<std::unique_ptr<gpu::Submission>, 2> both;
+    for (uint32_t slot = 0; slot < 2; ++slot) {
+        both[slot] = std::make_unique<gpu::Submission>(device);
+        record(renderer, both[slot]->begin().handle(), small_frame(f, 2), slot);
+    }
+    EXPECT_EQ(renderer.value_range(), ranges[2]);
+    EXPECT_EQ(renderer.surface_hull({0.5}), hulls[2]);
+    for (auto& submission : both)
+        submission->submit();
+    for (auto& submission : both)
+        submission->wait();
 }
 
 }  // namespace
