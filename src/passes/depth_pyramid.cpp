@@ -37,7 +37,7 @@ bool DepthPyramid::fit(const Target& target) {
 void DepthPyramid::build(gpu::Commands& commands, const Target& target, bool surfaces) {
     gpu::Pipeline& build = build_[surfaces ? 1 : 0];
     const gpu::Device& device = grid_.device();
-    const uint32_t threads = device.is_cpu() ? device.info().subgroup_size : 256;
+    const uint32_t threads = device.is_cpu() ? device.info().subgroup_size : 128;
     if (!build)
         build = gpu::Pipeline::compute(
             device,
