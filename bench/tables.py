@@ -6,7 +6,8 @@ import pathlib
 
 SIZES = {(1280, 720): "720p", (1920, 1080): "1080p", (2560, 1440): "1440p", (3840, 2160): "4K",
          (7680, 4320): "8K"}
-CULLING_PASSES = ("cull", "depth pyramid", "raster proxies", "find uncovered", "list blocks")
+CULLING_PASSES = ("cull", "depth pyramid", "surface pyramid", "raster proxies", "guess visible",
+                  "list blocks")
 
 
 def size_name(size):

@@ -208,7 +208,6 @@ void Culling::select(Commands& commands, uint32_t surface, Select which) {
          likely ? drawn_before_ : counters_});
     commands.push(Push{first_draw_, draw_count_});
     commands.dispatch_indirect(active_groups_[surface], 0);
-    commands.barrier();
 }
 
 }  // namespace isorast

@@ -43,7 +43,8 @@ public:
     void test(gpu::Commands& commands, uint32_t surface, const Target& target) {
         occlusion_->test(commands, active_groups_[surface], drawn(), target);
     }
-    // Lists a surface's blocks: those that are small in the picture, and those that are large.
+    // Lists a surface's blocks: those that are small in the picture, and those that are large. Done
+    // at the next barrier.
     enum class Size : uint32_t { small, large };
     void select(gpu::Commands& commands, uint32_t surface, Select which);
     Occlusion occlusion() const { return occlusion_->kind(); }

@@ -34,8 +34,9 @@ public:
     const gpu::Buffer* counters() const override { return &culling_.counters(); }
 
 private:
+    void clear(Commands& commands, const Frame& frame, const Target& target);
     // Lists blocks, extracts and rasterizes them: one surface after the other, through the same
-    // list.
+    // list. Clears first, with the frame's first list.
     void draw(Commands& commands, const Frame& frame, const Target& target, Culling::Select which);
 
     Rasterizer kind_;
@@ -61,11 +62,7 @@ Direct::Direct(const TechniqueContext& context)
 
 void Direct::record(Commands& commands, const Frame& frame, Target& target) {
     culling_.begin_frame(commands, frame, target);
-    {
-        const auto pass = commands.pass("clear");
-        rasterizer_->clear(commands, frame, target);
-    }
-    if (frame.isovalues.empty()) return commands.barrier();
+    if (frame.isovalues.empty()) return clear(commands, frame, target);
     if (!culling_.culls()) return draw(commands, frame, target, Culling::Select::all);
     draw(commands, frame, target, Culling::Select::seen);
     if (culling_.has_likely()) {
@@ -76,16 +73,27 @@ void Direct::record(Commands& commands, const Frame& frame, Target& target) {
     draw(commands, frame, target, Culling::Select::unseen);
 }
 
+void Direct::clear(Commands& commands, const Frame& frame, const Target& target) {
+    const auto pass = commands.pass("clear");
+    rasterizer_->clear(commands, frame, target);
+    commands.barrier();
+}
+
 void Direct::draw(Commands& commands, const Frame& frame, const Target& target,
                   Culling::Select which) {
     // Pass names for all, seen, likely and unseen blocks.
     constexpr std::array CULL{"list blocks", "cull seen", "cull likely", "cull unseen"};
     constexpr std::array EXTRACT{"extract", "extract seen", "extract likely", "extract unseen"};
+    constexpr std::array FIRST{"list blocks and clear", "cull seen and clear"};
     for (uint32_t surface = 0; surface < frame.isovalues.size(); ++surface) {
         if (which == Culling::Select::unseen) culling_.test(commands, surface, target);
+        // Side by side: a device is busy with neither alone.
+        const bool first = surface == 0 && size_t(which) < FIRST.size();
         {
-            const auto pass = commands.pass(CULL[size_t(which)]);
+            const auto pass = commands.pass(first ? FIRST[size_t(which)] : CULL[size_t(which)]);
             culling_.select(commands, surface, which);
+            if (first) rasterizer_->clear(commands, frame, target);
+            commands.barrier();
         }
         const auto pass = commands.pass(EXTRACT[size_t(which)]);
         rasterizer_->extract(commands, culling_, surface, frame, target);
