@@ -122,7 +122,7 @@ def doubling(sides, times):
 
 
 def culling_share(row):
-    """Of the frame, the passes that find out what is visible."""
+    """Of the frame, the passes that find out what is visible, but cull seen beside the clear."""
     passes = row["passes"].items()
     spent = sum(times["median_ms"] for name, times in passes if name.startswith(CULLING_PASSES))
     return spent / row["frame"]["median_ms"]

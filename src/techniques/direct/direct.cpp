@@ -84,7 +84,7 @@ void Direct::draw(Commands& commands, const Frame& frame, const Target& target,
     // Pass names for all, seen, likely and unseen blocks.
     constexpr std::array CULL{"list blocks", "cull seen", "cull likely", "cull unseen"};
     constexpr std::array EXTRACT{"extract", "extract seen", "extract likely", "extract unseen"};
-    constexpr std::array FIRST{"list blocks and clear", "cull seen and clear"};
+    constexpr std::array FIRST{"clear and list blocks", "clear and cull seen"};
     for (uint32_t surface = 0; surface < frame.isovalues.size(); ++surface) {
         if (which == Culling::Select::unseen) culling_.test(commands, surface, target);
         // Side by side: a device is busy with neither alone.
