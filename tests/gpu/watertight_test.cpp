@@ -68,8 +68,8 @@ public:
             culling_.find_active(commands, {grid_.stored().from_value(frame.isovalues[0])});
             culling_.begin_frame(commands, frame, none);
             commands.clear(counts_, {});
-            commands.barrier();
             culling_.select(commands, 0, Culling::Select::all);
+            commands.barrier();
             for (const auto size : {Culling::Size::small, Culling::Size::large}) {
                 const uint32_t first = culling_.first_draw(size);
                 commands.bind(pipelines_[size_t(size)], {culling_.draws(), culling_.drawn_blocks(),
