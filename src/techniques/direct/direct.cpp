@@ -36,8 +36,9 @@ public:
 private:
     void clear(Commands& commands, const Frame& frame, const Target& target);
     // Lists blocks, extracts and rasterizes them: one surface after the other, through the same
-    // list. Clears first, with the frame's first list.
-    void draw(Commands& commands, const Frame& frame, const Target& target, Culling::Select which);
+    // list. `clears` the target before; which must be all or seen.
+    void draw(Commands& commands, const Frame& frame, const Target& target, Culling::Select which,
+              bool clears = false);
 
     Rasterizer kind_;
     std::unique_ptr<BlockRasterizer> rasterizer_;
@@ -63,8 +64,9 @@ Direct::Direct(const TechniqueContext& context)
 void Direct::record(Commands& commands, const Frame& frame, Target& target) {
     culling_.begin_frame(commands, frame, target);
     if (frame.isovalues.empty()) return clear(commands, frame, target);
-    if (!culling_.culls()) return draw(commands, frame, target, Culling::Select::all);
-    draw(commands, frame, target, Culling::Select::seen);
+    if (!culling_.culls())
+        return draw(commands, frame, target, Culling::Select::all, /* clears= */ true);
+    draw(commands, frame, target, Culling::Select::seen, /* clears= */ true);
     if (culling_.has_likely()) {
         culling_.look(commands, target, /* surfaces= */ true);
         draw(commands, frame, target, Culling::Select::likely);
@@ -80,19 +82,20 @@ void Direct::clear(Commands& commands, const Frame& frame, const Target& target)
 }
 
 void Direct::draw(Commands& commands, const Frame& frame, const Target& target,
-                  Culling::Select which) {
+                  Culling::Select which, bool clears) {
     // Pass names for all, seen, likely and unseen blocks.
     constexpr std::array CULL{"list blocks", "cull seen", "cull likely", "cull unseen"};
     constexpr std::array EXTRACT{"extract", "extract seen", "extract likely", "extract unseen"};
-    constexpr std::array FIRST{"clear and list blocks", "clear and cull seen"};
+    constexpr std::array CLEAR_AND_CULL{"clear and list blocks", "clear and cull seen"};
     for (uint32_t surface = 0; surface < frame.isovalues.size(); ++surface) {
         if (which == Culling::Select::unseen) culling_.test(commands, surface, target);
-        // Side by side: a device is busy with neither alone.
-        const bool first = surface == 0 && size_t(which) < FIRST.size();
         {
-            const auto pass = commands.pass(first ? FIRST[size_t(which)] : CULL[size_t(which)]);
+            // Side by side: neither keeps a device busy alone.
+            const bool both = clears && surface == 0;
+            const auto pass =
+                commands.pass(both ? CLEAR_AND_CULL[size_t(which)] : CULL[size_t(which)]);
             culling_.select(commands, surface, which);
-            if (first) rasterizer_->clear(commands, frame, target);
+            if (both) rasterizer_->clear(commands, frame, target);
             commands.barrier();
         }
         const auto pass = commands.pass(EXTRACT[size_t(which)]);
